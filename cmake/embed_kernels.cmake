@@ -1,0 +1,10 @@
+# Script: turns the kernel files FILES (below ROOT) into the C++ file OUTPUT.
+set(text "// Made by cmake/embed_kernels.cmake from the files of cl/. Do not edit.\n#include \"src/device/kernel_sources.hpp\"\n\nnamespace clinch::detail {\n\nconst EmbeddedKernel embedded_kernels[] = {\n")
+set(count 0)
+foreach(file IN LISTS FILES)
+    file(READ ${ROOT}/${file} source)
+    string(APPEND text "    {\"${file}\",\n     R\"clinch(${source})clinch\"},\n")
+    math(EXPR count "${count} + 1")
+endforeach()
+string(APPEND text "};\nconst std::size_t embedded_kernel_count = ${count};\n\n}  // namespace clinch::detail\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -1,0 +1,79 @@
+// Broad phase: which boxes overlap.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "clinch/aabb.hpp"
+#include "clinch/context.hpp"
+#include "clinch/report.hpp"
+#include "clinch/scene.hpp"
+#include "clinch/view.hpp"
+
+namespace clinch {
+
+/// The order of the pairs of a result.
+enum class Order {
+    Sorted,  ///< ascending by a, then b; the same bytes on every device with every algorithm
+    Any,     ///< as they come, which may differ from run to run; some algorithms are faster so
+};
+
+struct BroadPhaseOptions {
+    /// A name of broad_phase_names(), or "auto": chosen at each call from the number of boxes.
+    std::string algorithm = "auto";
+    Order order = Order::Sorted;
+    /// More pairs than this is Error LimitExceeded, which names the true count. Nothing is ever cut off.
+    std::uint64_t max_pairs = UINT64_MAX;
+    /// Device memory for work in between (bit buffers); larger means fewer passes. At least what
+    /// one row of boxes needs is taken.
+    std::size_t scratch_bytes = std::size_t{64} << 20;
+    /// Called now and then during long work with the share done, 0 to 1; may throw to stop the work.
+    std::function<void(double)> progress;
+    /// Wait for the device after each stage, so that StageTimes are those of the stages (costs a
+    /// few tens of microseconds a stage).
+    bool measure_stages = false;
+};
+
+/// Columns that decide which overlapping boxes are pairs, one entry a box; a null pointer stands for
+/// the default in every row (group 1, mask all ones, Dynamic). Read during the call only.
+struct FilterColumns {
+    const std::uint32_t* group = nullptr;
+    const std::uint32_t* mask = nullptr;
+    const Motion* motion = nullptr;
+};
+
+/// Names of the algorithms, in the order of the registry, "auto" not among them.
+std::vector<std::string> broad_phase_names();
+
+/// Finds all pairs of overlapping boxes; keeps its buffers between calls. Usable alone, without a Scene.
+class BroadPhase {
+public:
+    /// An unknown algorithm, or one that needs a device on a Context without, is InvalidArgument.
+    /// `context` must outlive this object. Builds nothing yet.
+    explicit BroadPhase(Context& context, BroadPhaseOptions options = {});
+    ~BroadPhase();
+    BroadPhase(BroadPhase&& other) noexcept;
+    BroadPhase& operator=(BroadPhase&& other) noexcept;
+
+    /// All pairs of `boxes` that overlap (closed boxes: touching counts) and pass `filters`, in the
+    /// order asked for. A pair's numbers are indices into `boxes`; at most 2^32 - 1 boxes. Invalid boxes pair with
+    /// none and are listed in report().rejected. The result is readable host memory, valid until the
+    /// next call or the end of this object. Throws Error; then there is no result.
+    View<const Pair> find(View<const Aabb> boxes, const FilterColumns& filters = {});
+
+    /// Counts and times of the last call that returned.
+    const Report& report() const noexcept;
+
+    /// The library's own view; not for users.
+    struct Impl;
+    Impl& impl() const noexcept { return *impl_; }
+
+private:
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace clinch

@@ -1,0 +1,57 @@
+// One step of collision detection over a Scene.
+#pragma once
+
+#include <memory>
+
+#include "clinch/aabb.hpp"
+#include "clinch/broad_phase.hpp"
+#include "clinch/context.hpp"
+#include "clinch/report.hpp"
+#include "clinch/scene.hpp"
+#include "clinch/view.hpp"
+
+namespace clinch {
+
+struct PipelineOptions {
+    BroadPhaseOptions broad_phase;
+};
+
+/// What a step found. Views are valid until the pipeline's next step or its end.
+class StepResult {
+public:
+    /// Candidate pairs of body indices: boxes overlap, or a box reaches into a plane, and the
+    /// filters of both bodies allow it. In the order BroadPhaseOptions asks for.
+    View<const Pair> pairs() const;
+    /// The box of every row, world space, float32, rounded outward: it holds the exact shape grown
+    /// by the body's margin. Rows without a box (rejected, removed, planes) hold NaN. Copied from
+    /// the device when first asked for: 24 bytes a row.
+    View<const Aabb> boxes() const;
+    const Report& report() const noexcept;
+
+    /// The library's own view; not for users.
+    struct Impl;
+    explicit StepResult(Impl& impl) noexcept : impl_(&impl) {}
+
+private:
+    Impl* impl_;
+};
+
+/// Steps scenes: bounds, then broad phase. Keeps boxes and buffers between steps, so that stepping
+/// the same scene again costs only what changed in it.
+class Pipeline {
+public:
+    /// `context` must outlive this object. Builds nothing yet. Errors as BroadPhase.
+    explicit Pipeline(Context& context, PipelineOptions options = {});
+    ~Pipeline();
+    Pipeline(Pipeline&& other) noexcept;
+    Pipeline& operator=(Pipeline&& other) noexcept;
+
+    /// Finds the candidate pairs of the scene as it stands. Meaningless bodies are left out and
+    /// listed in the report. Throws Error; the next step then starts afresh.
+    const StepResult& step(const Scene& scene);
+
+private:
+    std::unique_ptr<StepResult::Impl> impl_;
+};
+
+}  // namespace clinch

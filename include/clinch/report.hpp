@@ -1,0 +1,41 @@
+// What a step did, and what it did not need to do.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "clinch/scene.hpp"
+
+namespace clinch {
+
+/// Milliseconds of wall time a stage took. With PipelineOptions::measure_stages off, the stages that
+/// a device runs behind the host's back are counted in the stage that first waits for them.
+struct StageTimes {
+    double total = 0.0;
+    double upload = 0.0;    ///< gathering changed rows and sending them
+    double bounds = 0.0;    ///< making boxes
+    double broad = 0.0;     ///< finding pairs
+    double download = 0.0;  ///< making the pairs readable on the host
+};
+
+/// Work that was not done because the scene did not need it.
+struct Skipped {
+    std::uint64_t bounds = 0;          ///< boxes not computed again since their rows did not change
+    std::uint64_t pairs_filtered = 0;  ///< overlapping pairs dropped by group and mask
+    std::uint64_t static_pairs = 0;    ///< overlapping pairs dropped since neither body can move
+};
+
+/// Counts and times of the last step (or find).
+struct Report {
+    std::uint64_t bodies = 0;  ///< rejected ones included
+    std::uint64_t pairs = 0;
+    std::uint64_t box_tests = 0;  ///< box against box tests done by the broad phase
+    std::string algorithm;        ///< the broad phase that ran, its name in the registry
+    StageTimes ms;
+    Skipped skipped;
+    std::vector<Rejection> rejected;     ///< ascending by body
+    std::uint64_t peak_device_bytes = 0; ///< most memory held on devices so far, summed over them
+};
+
+}  // namespace clinch

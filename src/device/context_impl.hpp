@@ -1,0 +1,26 @@
+// What stands behind clinch::Context: the chosen devices, opened one by one when first used.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "clinch/context.hpp"
+#include "src/device/device.hpp"
+
+namespace clinch {
+
+struct Context::Impl {
+    ContextOptions options;
+    std::vector<DeviceInfo> infos;
+    std::vector<cl_device_id> ids;                           // retained: see DeviceList in discovery.hpp
+    std::vector<std::shared_ptr<const void>> id_owners;      // keeps sub-devices alive
+    std::vector<std::unique_ptr<detail::Device>> devices;    // null until opened
+
+    /// Opens device i if it is not open yet.
+    detail::Device& open(std::size_t i);
+    /// The device that one-device work goes to: the first GPU, else the device with most compute
+    /// units. Opens nothing. InvalidArgument on a Context without devices.
+    std::size_t primary() const;
+};
+
+}  // namespace clinch
