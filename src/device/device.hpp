@@ -166,6 +166,9 @@ public:
     /// The kernel `name` of the module `module` ("broad_phase/brute" is cl/broad_phase/brute.cl),
     /// built for this device on first use with `defines` ("-DNAME=1 ...") on top of LANES.
     Kernel kernel(const std::string& module, const std::string& name, const std::string& defines = {});
+    /// Makes `source` (which may include files of cl/) the module `module`, for kernels that are not
+    /// part of the library: tests and benchmark baselines.
+    void add_module(const std::string& module, const std::string& source);
     /// Enqueues `groups` work-groups of `group_size` items. No groups: nothing is enqueued.
     void launch(const Kernel& kernel, std::size_t groups, std::size_t group_size);
     /// Enqueues at least `items` work-items in groups of 64; the kernel itself leaves out those past its end.
