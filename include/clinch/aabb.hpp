@@ -30,8 +30,14 @@ inline bool overlap(const Aabb& p, const Aabb& q) noexcept {
 }
 
 /// Ascending by a, then b: the order of sorted results.
-inline bool operator<(const Pair& p, const Pair& q) noexcept { return p.a != q.a ? p.a < q.a : p.b < q.b; }
-inline bool operator==(const Pair& p, const Pair& q) noexcept { return p.a == q.a && p.b == q.b; }
-inline bool operator!=(const Pair& p, const Pair& q) noexcept { return !(p == q); }
+inline bool operator<(const Pair& p, const Pair& q) noexcept {
+    return p.a != q.a ? p.a < q.a : p.b < q.b;
+}
+inline bool operator==(const Pair& p, const Pair& q) noexcept {
+    return p.a == q.a && p.b == q.b;
+}
+inline bool operator!=(const Pair& p, const Pair& q) noexcept {
+    return !(p == q);
+}
 
 }  // namespace clinch

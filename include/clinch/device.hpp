@@ -20,7 +20,7 @@ struct DeviceInfo {
     std::string vendor;
     std::string platform;
     std::string platform_version;
-    std::string version;         ///< the OpenCL version it implements
+    std::string version;  ///< the OpenCL version it implements
     std::string driver_version;
     DeviceType type = DeviceType::Other;
     std::uint32_t compute_units = 0;
@@ -29,10 +29,10 @@ struct DeviceInfo {
     std::uint64_t global_memory = 0;
     std::uint64_t max_allocation = 0;
     std::uint64_t local_memory = 0;
-    bool fp64 = false;            ///< computes in float64
-    bool unified_memory = false;  ///< shares the host's memory: results are mapped, not copied
-    std::uint32_t sub_device = 0;   ///< which part of the device this is; 0 if `sub_devices` is 1
-    std::uint32_t sub_devices = 1;  ///< how many equal parts the device was divided into
+    bool fp64 = false;                ///< computes in float64
+    bool unified_memory = false;      ///< shares the host's memory: results are mapped, not copied
+    std::uint32_t sub_device = 0;     ///< which part of the device this is; 0 if `sub_devices` is 1
+    std::uint32_t sub_devices = 1;    ///< how many equal parts the device was divided into
     std::vector<std::string> quirks;  ///< names of the driver faults that the library works around here
     std::string use;                  ///< what the library would use it for, one clause
 };

@@ -11,7 +11,7 @@ enum class ErrorCode {
     InvalidArgument,  ///< the call's own arguments are wrong: nothing was done
     NoDevice,         ///< no OpenCL device matches what was asked for
     BuildFailed,      ///< a kernel did not compile: see Error::build_log()
-    OutOfMemory,     ///< host or device memory was short; the message names the size asked for
+    OutOfMemory,      ///< host or device memory was short; the message names the size asked for
     DeviceFailed,     ///< an OpenCL call failed: see Error::opencl_status()
     LimitExceeded,    ///< a limit set by the caller was passed; the message names the true count
     FileFailed,       ///< a file of the library's own (a kernel source) could not be read

@@ -34,8 +34,8 @@ struct Report {
     std::string algorithm;        ///< the broad phase that ran, its name in the registry
     StageTimes ms;
     Skipped skipped;
-    std::vector<Rejection> rejected;     ///< ascending by body
-    std::uint64_t peak_device_bytes = 0; ///< most memory held on devices so far, summed over them
+    std::vector<Rejection> rejected;      ///< ascending by body
+    std::uint64_t peak_device_bytes = 0;  ///< most memory held on devices so far, summed over them
 };
 
 }  // namespace clinch

@@ -17,7 +17,8 @@ detail::Device& Context::Impl::open(std::size_t i) {
 
 std::size_t Context::Impl::primary() const {
     if (infos.empty())
-        throw Error(ErrorCode::InvalidArgument, "this needs an OpenCL device, but the context was made for the host alone");
+        throw Error(ErrorCode::InvalidArgument,
+                    "this needs an OpenCL device, but the context was made for the host alone");
     std::size_t best = 0;
     const auto rank = [&](std::size_t i) {
         return std::make_pair(infos[i].type == DeviceType::Gpu, infos[i].compute_units * infos[i].lanes);
@@ -42,9 +43,13 @@ Context::~Context() = default;
 Context::Context(Context&& other) noexcept = default;
 Context& Context::operator=(Context&& other) noexcept = default;
 
-Context Context::host_only() { return Context(std::make_unique<Impl>()); }
+Context Context::host_only() {
+    return Context(std::make_unique<Impl>());
+}
 
-const std::vector<DeviceInfo>& Context::devices() const noexcept { return impl_->infos; }
+const std::vector<DeviceInfo>& Context::devices() const noexcept {
+    return impl_->infos;
+}
 
 std::vector<DeviceReport> Context::report() const {
     std::vector<DeviceReport> reports;
@@ -59,7 +64,9 @@ std::vector<DeviceReport> Context::report() const {
     return reports;
 }
 
-std::size_t Context::module_count() const noexcept { return detail::kernel_module_count(); }
+std::size_t Context::module_count() const noexcept {
+    return detail::kernel_module_count();
+}
 
 Context make_context(cl_context context, cl_device_id device, cl_command_queue queue, const ContextOptions& options) {
     cl_context queue_context = nullptr;
@@ -72,7 +79,8 @@ Context make_context(cl_context context, cl_device_id device, cl_command_queue q
     detail::check(clGetCommandQueueInfo(queue, CL_QUEUE_PROPERTIES, sizeof properties, &properties, nullptr),
                   "clGetCommandQueueInfo");
     if (queue_context != context || queue_device != device)
-        throw Error(ErrorCode::InvalidArgument, "the command queue belongs to another OpenCL context or device than those given");
+        throw Error(ErrorCode::InvalidArgument,
+                    "the command queue belongs to another OpenCL context or device than those given");
     if ((properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0)
         throw Error(ErrorCode::InvalidArgument, "the command queue runs out of order; an in-order queue is needed");
     auto impl = std::make_unique<Context::Impl>();

@@ -12,9 +12,9 @@ namespace clinch {
 struct Context::Impl {
     ContextOptions options;
     std::vector<DeviceInfo> infos;
-    std::vector<cl_device_id> ids;                           // retained: see DeviceList in discovery.hpp
-    std::vector<std::shared_ptr<const void>> id_owners;      // keeps sub-devices alive
-    std::vector<std::unique_ptr<detail::Device>> devices;    // null until opened
+    std::vector<cl_device_id> ids;                         // retained: see DeviceList in discovery.hpp
+    std::vector<std::shared_ptr<const void>> id_owners;    // keeps sub-devices alive
+    std::vector<std::unique_ptr<detail::Device>> devices;  // null until opened
 
     /// Opens device i if it is not open yet.
     detail::Device& open(std::size_t i);

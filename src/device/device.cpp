@@ -6,7 +6,6 @@
 #include <boost/compute/context.hpp>
 #include <boost/compute/kernel.hpp>
 #include <boost/compute/program.hpp>
-#include <chrono>
 #include <map>
 #include <optional>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "src/device/kernel_sources.hpp"
 #include "src/device/opencl_error.hpp"
 #include "src/device/program_cache.hpp"
+#include "src/device/stopwatch.hpp"
 
 namespace clinch::detail {
 
@@ -55,7 +55,7 @@ struct Device::Impl {
     compute::context context;
     compute::command_queue queue;
     ProgramCache cache;
-    std::map<std::string, compute::program> programs;    // by module and defines
+    std::map<std::string, compute::program> programs;  // by module and defines
     std::map<std::string, std::string> added_modules;  // sources given by add_module
     std::shared_ptr<MemoryAccount> account = std::make_shared<MemoryAccount>();
     DeviceReport report;
@@ -88,15 +88,6 @@ std::string cache_key(const DeviceInfo& info, const std::string& build_options, 
         key += std::to_string(part.size()) + ':' + part + '\n';
     return key;
 }
-
-class Stopwatch {
-public:
-    double ms() const { return std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
-
-private:
-    using Clock = std::chrono::steady_clock;
-    Clock::time_point start_ = Clock::now();
-};
 
 }  // namespace
 
@@ -150,7 +141,8 @@ const compute::program& Device::Impl::program(const std::string& module, const s
     } else {
         program = build(module, source, build_options);
         report.modules_built.push_back(module);
-        cache.store(key, checked("reading the binary of kernel module '" + module + "'", [&] { return program->binary(); }));
+        cache.store(key,
+                    checked("reading the binary of kernel module '" + module + "'", [&] { return program->binary(); }));
     }
     report.build_ms += watch.ms();
     return programs.emplace(module + ' ' + build_options, *program).first->second;
@@ -175,18 +167,26 @@ Device::~Device() {
     if (impl_ != nullptr) clFinish(impl_->queue.get());
 }
 
-const DeviceInfo& Device::info() const noexcept { return impl_->info; }
-cl_context Device::context() const noexcept { return impl_->context.get(); }
-cl_command_queue Device::queue() const noexcept { return impl_->queue.get(); }
-std::size_t Device::group_size() const noexcept { return impl_->info.lanes > 1 ? 1 : 64; }
+const DeviceInfo& Device::info() const noexcept {
+    return impl_->info;
+}
+cl_context Device::context() const noexcept {
+    return impl_->context.get();
+}
+cl_command_queue Device::queue() const noexcept {
+    return impl_->queue.get();
+}
+std::size_t Device::group_size() const noexcept {
+    return impl_->info.lanes > 1 ? 1 : 64;
+}
 
 Buffer Device::allocate(std::size_t bytes, const char* what) {
     bytes = std::max<std::size_t>(bytes, 1);
-    const std::string purpose = std::string("allocating ") + std::to_string(bytes) + " bytes for " + what + " on '" +
-                                impl_->info.name + "'";
+    const std::string purpose =
+        std::string("allocating ") + std::to_string(bytes) + " bytes for " + what + " on '" + impl_->info.name + "'";
     if (bytes > impl_->info.max_allocation)
-        throw Error(ErrorCode::OutOfMemory,
-                    purpose + " failed: one buffer may have " + std::to_string(impl_->info.max_allocation) + " bytes there");
+        throw Error(ErrorCode::OutOfMemory, purpose + " failed: one buffer may have " +
+                                                std::to_string(impl_->info.max_allocation) + " bytes there");
     // Where host and device share memory, host memory from the start: mapping is then free.
     const cl_mem_flags place = impl_->info.unified_memory ? CL_MEM_ALLOC_HOST_PTR : 0;
     Buffer buffer;
@@ -216,7 +216,8 @@ void Device::write(const Buffer& buffer, const void* data, std::size_t bytes, st
 
 void Device::read(cl_mem memory, void* data, std::size_t bytes, std::size_t offset) {
     if (bytes == 0) return;
-    check(clEnqueueReadBuffer(queue(), memory, CL_TRUE, offset, bytes, data, 0, nullptr, nullptr), "clEnqueueReadBuffer");
+    check(clEnqueueReadBuffer(queue(), memory, CL_TRUE, offset, bytes, data, 0, nullptr, nullptr),
+          "clEnqueueReadBuffer");
 }
 
 void Device::read(const Buffer& buffer, void* data, std::size_t bytes, std::size_t offset) {
@@ -234,7 +235,8 @@ Mapping Device::map(const Buffer& buffer, std::size_t bytes) {
     Mapping mapping;
     if (bytes == 0) return mapping;
     cl_int status = CL_SUCCESS;
-    void* pointer = clEnqueueMapBuffer(queue(), buffer.handle(), CL_TRUE, CL_MAP_READ, 0, bytes, 0, nullptr, nullptr, &status);
+    void* pointer =
+        clEnqueueMapBuffer(queue(), buffer.handle(), CL_TRUE, CL_MAP_READ, 0, bytes, 0, nullptr, nullptr, &status);
     check(status, "clEnqueueMapBuffer");
     mapping.device_ = this;
     mapping.memory_ = buffer.handle();
@@ -254,7 +256,9 @@ Kernel Device::kernel(const std::string& module, const std::string& name, const 
     return kernel;
 }
 
-void Device::add_module(const std::string& module, const std::string& source) { impl_->added_modules[module] = source; }
+void Device::add_module(const std::string& module, const std::string& source) {
+    impl_->added_modules[module] = source;
+}
 
 void Device::launch(const Kernel& kernel, std::size_t groups, std::size_t group_size) {
     if (groups == 0) return;
@@ -262,14 +266,18 @@ void Device::launch(const Kernel& kernel, std::size_t groups, std::size_t group_
     const cl_int status =
         clEnqueueNDRangeKernel(queue(), kernel.handle(), 1, nullptr, &items, &group_size, 0, nullptr, nullptr);
     if (status != CL_SUCCESS)
-        throw_opencl("launching kernel '" + kernel.name() + "' with " + std::to_string(items) + " work-items in groups of " +
-                         std::to_string(group_size) + " on '" + impl_->info.name + "'",
+        throw_opencl("launching kernel '" + kernel.name() + "' with " + std::to_string(items) +
+                         " work-items in groups of " + std::to_string(group_size) + " on '" + impl_->info.name + "'",
                      status);
 }
 
-void Device::launch_items(const Kernel& kernel, std::size_t items) { launch(kernel, (items + 63) / 64, 64); }
+void Device::launch_items(const Kernel& kernel, std::size_t items) {
+    launch(kernel, (items + 63) / 64, 64);
+}
 
-void Device::finish() { check(clFinish(queue()), "clFinish"); }
+void Device::finish() {
+    check(clFinish(queue()), "clFinish");
+}
 
 DeviceReport Device::report() const {
     DeviceReport report = impl_->report;

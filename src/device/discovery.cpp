@@ -16,10 +16,14 @@ namespace clinch {
 
 const char* to_string(DeviceType type) noexcept {
     switch (type) {
-        case DeviceType::Cpu: return "cpu";
-        case DeviceType::Gpu: return "gpu";
-        case DeviceType::Accelerator: return "accelerator";
-        case DeviceType::Other: return "other";
+        case DeviceType::Cpu:
+            return "cpu";
+        case DeviceType::Gpu:
+            return "gpu";
+        case DeviceType::Accelerator:
+            return "accelerator";
+        case DeviceType::Other:
+            return "other";
     }
     return "other";
 }
@@ -38,7 +42,8 @@ DeviceFilter DeviceFilter::parse(const std::string& text, const std::string& wha
         const auto [end, error] = std::from_chars(item.data(), item.data() + item.size(), index);
         if (item.empty() || error != std::errc{} || end != item.data() + item.size())
             throw Error(ErrorCode::InvalidArgument,
-                        what + " is '" + text + "'; accepted are device indices such as 0,2, a type (cpu, gpu, accelerator), or all");
+                        what + " is '" + text +
+                            "'; accepted are device indices such as 0,2, a type (cpu, gpu, accelerator), or all");
         filter.indices.push_back(index);
     }
     return filter;
@@ -111,10 +116,11 @@ void divide(const FoundDevice& whole, std::uint32_t parts, std::vector<FoundDevi
     const std::uint32_t units = whole.info.compute_units / parts;
     if (units == 0)
         throw Error(ErrorCode::InvalidArgument, "cannot divide device " + std::to_string(whole.info.index) + " ('" +
-                                                    whole.info.name + "') of " + std::to_string(whole.info.compute_units) +
-                                                    " compute units into " + std::to_string(parts) + " devices");
-    const auto owner = std::make_shared<std::vector<compute::device>>(
-        checked("clCreateSubDevices on '" + whole.info.name + "'", [&] {
+                                                    whole.info.name + "') of " +
+                                                    std::to_string(whole.info.compute_units) + " compute units into " +
+                                                    std::to_string(parts) + " devices");
+    const auto owner =
+        std::make_shared<std::vector<compute::device>>(checked("clCreateSubDevices on '" + whole.info.name + "'", [&] {
             return compute::device(whole.id).partition_by_counts(std::vector<std::size_t>(parts, units));
         }));
     for (std::uint32_t part = 0; part < parts; ++part) {
@@ -177,7 +183,8 @@ std::vector<FoundDevice> choose_devices(const DeviceFilter& filter) {
     const std::vector<FoundDevice> found = find_devices(&platforms);
     const char* variable = std::getenv("CLINCH_DEVICES");
     const std::string environment = variable == nullptr ? "" : variable;
-    const DeviceFilter narrowed = environment.empty() ? DeviceFilter{} : DeviceFilter::parse(environment, "CLINCH_DEVICES");
+    const DeviceFilter narrowed =
+        environment.empty() ? DeviceFilter{} : DeviceFilter::parse(environment, "CLINCH_DEVICES");
     std::vector<FoundDevice> chosen;
     for (const FoundDevice& one : found) {
         if (!passes(filter, one.info) || !passes(narrowed, one.info)) continue;

@@ -8,13 +8,20 @@ namespace clinch {
 
 const char* to_string(ErrorCode code) noexcept {
     switch (code) {
-        case ErrorCode::InvalidArgument: return "invalid argument";
-        case ErrorCode::NoDevice: return "no device";
-        case ErrorCode::BuildFailed: return "build failed";
-        case ErrorCode::OutOfMemory: return "out of memory";
-        case ErrorCode::DeviceFailed: return "device failed";
-        case ErrorCode::LimitExceeded: return "limit exceeded";
-        case ErrorCode::FileFailed: return "file failed";
+        case ErrorCode::InvalidArgument:
+            return "invalid argument";
+        case ErrorCode::NoDevice:
+            return "no device";
+        case ErrorCode::BuildFailed:
+            return "build failed";
+        case ErrorCode::OutOfMemory:
+            return "out of memory";
+        case ErrorCode::DeviceFailed:
+            return "device failed";
+        case ErrorCode::LimitExceeded:
+            return "limit exceeded";
+        case ErrorCode::FileFailed:
+            return "file failed";
     }
     return "unknown";
 }
@@ -27,9 +34,10 @@ namespace detail {
 void throw_opencl(const std::string& what, cl_int status) {
     const bool memory = status == CL_MEM_OBJECT_ALLOCATION_FAILURE || status == CL_OUT_OF_RESOURCES ||
                         status == CL_OUT_OF_HOST_MEMORY || status == CL_INVALID_BUFFER_SIZE;
-    throw Error(memory ? ErrorCode::OutOfMemory : ErrorCode::DeviceFailed,
-                what + " failed: " + boost::compute::opencl_error::to_string(status) + " (" + std::to_string(status) + ")",
-                status);
+    throw Error(
+        memory ? ErrorCode::OutOfMemory : ErrorCode::DeviceFailed,
+        what + " failed: " + boost::compute::opencl_error::to_string(status) + " (" + std::to_string(status) + ")",
+        status);
 }
 
 }  // namespace detail

@@ -46,7 +46,9 @@ void append(const std::string& text, std::set<std::string>& seen, std::string& o
 
 }  // namespace
 
-std::string kernel_source(const std::string& module) { return with_includes(read_kernel_file(module + ".cl")); }
+std::string kernel_source(const std::string& module) {
+    return with_includes(read_kernel_file(module + ".cl"));
+}
 
 std::string with_includes(const std::string& text) {
     std::set<std::string> seen;

@@ -2,6 +2,8 @@
 
 namespace clinch::detail {
 
-std::vector<std::string> quirks_of(const DeviceInfo&) { return {}; }
+std::vector<std::string> quirks_of(const DeviceInfo&) {
+    return {};
+}
 
 }  // namespace clinch::detail

@@ -1,0 +1,52 @@
+// What every broad-phase algorithm offers, and the table of all of them.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "clinch/broad_phase.hpp"
+#include "clinch/view.hpp"
+#include "src/broad_phase/inputs.hpp"
+#include "src/broad_phase/pair_list.hpp"
+#include "src/device/device.hpp"
+
+namespace clinch::detail {
+
+/// Counts that an algorithm keeps.
+struct FindCounts {
+    std::uint64_t box_tests = 0;
+    std::uint64_t pairs_filtered = 0;
+    std::uint64_t static_pairs = 0;
+    double download_ms = 0.0;    ///< spent making pairs readable on the host
+    bool invalid_boxes = false;  ///< it met boxes that are no boxes; which, the caller finds out
+};
+
+/// One algorithm with the buffers it keeps between calls.
+class BroadPhaseAlgorithm {
+public:
+    virtual ~BroadPhaseAlgorithm() = default;
+    /// Puts all pairs that pass into `pairs` (empty on entry), in the order the options ask for, and
+    /// adds to `counts`. Throws LimitExceeded through check_limit().
+    virtual void find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, FindCounts& counts) = 0;
+};
+
+/// One row of the registry.
+struct AlgorithmRow {
+    const char* name;
+    bool needs_device;
+    /// `device` is null for a row that needs none.
+    std::unique_ptr<BroadPhaseAlgorithm> (*make)(Device* device, const BroadPhaseOptions& options);
+};
+
+/// All algorithms. A new one is one file with a maker declared in registry.cpp and one row there.
+View<const AlgorithmRow> registry();
+/// The row of `name`; an unknown name is InvalidArgument that lists the known ones.
+const AlgorithmRow& algorithm_named(const std::string& name);
+/// The choice of "auto" for `count` boxes.
+const AlgorithmRow& choose_algorithm(std::uint64_t count, bool has_device);
+
+/// Throws LimitExceeded when `pairs` is more than the options allow; `pairs` is the true count.
+void check_limit(std::uint64_t pairs, const BroadPhaseOptions& options);
+
+}  // namespace clinch::detail

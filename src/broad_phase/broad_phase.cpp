@@ -1,0 +1,137 @@
+#include "clinch/broad_phase.hpp"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "clinch/interop/opencl.hpp"
+#include "src/broad_phase/broad_phase_impl.hpp"
+#include "src/device/opencl_error.hpp"
+#include "src/device/stopwatch.hpp"
+
+namespace clinch {
+namespace {
+
+// Why a box is no box; empty if it is one.
+std::string why_no_box(const Aabb& box) {
+    constexpr char axis[] = "xyz";
+    std::ostringstream why;
+    for (int d = 0; d < 3; ++d) {
+        const bool low = std::isfinite(box.min[d]);
+        if (!low || !std::isfinite(box.max[d])) {
+            why << (low ? "max " : "min ") << axis[d] << " is " << (low ? box.max[d] : box.min[d])
+                << " and must be finite";
+            break;
+        }
+        if (box.min[d] > box.max[d]) {
+            why << "min " << axis[d] << " is " << box.min[d] << " and must not be greater than max " << axis[d] << ", "
+                << box.max[d];
+            break;
+        }
+    }
+    return why.str();
+}
+
+std::vector<Rejection> rejected_boxes(View<const Aabb> boxes) {
+    std::vector<Rejection> rejected;
+    for (std::size_t i = 0; i < boxes.size(); ++i)
+        if (std::string why = why_no_box(boxes[i]); !why.empty())
+            rejected.push_back({static_cast<std::uint32_t>(i), std::move(why)});
+    return rejected;
+}
+
+void check_count(std::uint64_t count) {
+    if (count > std::numeric_limits<std::uint32_t>::max())
+        throw Error(ErrorCode::LimitExceeded,
+                    "there are " + std::to_string(count) + " boxes; at most 4294967295 are accepted");
+}
+
+}  // namespace
+
+BroadPhase::Impl::Impl(Context& c, BroadPhaseOptions o) : context(c.impl()), options(std::move(o)) {
+    if (options.algorithm != "auto" && detail::algorithm_named(options.algorithm).needs_device && context.infos.empty())
+        throw Error(ErrorCode::InvalidArgument,
+                    "the algorithm '" + options.algorithm +
+                        "' needs an OpenCL device, but the context was made for the host alone");
+}
+
+const detail::AlgorithmRow& BroadPhase::Impl::choose(std::uint64_t count) const {
+    if (options.algorithm != "auto") return detail::algorithm_named(options.algorithm);
+    return detail::choose_algorithm(count, !context.infos.empty());
+}
+
+detail::Device& BroadPhase::Impl::device() const {
+    return context.open(context.primary());
+}
+
+View<const Pair> BroadPhase::Impl::find(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
+                                        const detail::FilterInput& filters, bool list_rejected) {
+    const detail::Stopwatch total;
+    pairs.clear();
+    report = Report{};
+    auto& algorithm = made[&row];
+    if (!algorithm) algorithm = row.make(row.needs_device ? &device() : nullptr, options);
+    if (row.needs_device) boxes.on(device());
+    report.ms.upload = total.ms();
+
+    detail::FindCounts counts;
+    const detail::Stopwatch broad;
+    try {
+        algorithm->find(boxes, filters, pairs, counts);
+    } catch (...) {
+        pairs.clear();
+        throw;
+    }
+    report.ms.download = counts.download_ms;
+    report.ms.broad = broad.ms() - counts.download_ms;
+    if (counts.invalid_boxes && list_rejected) report.rejected = rejected_boxes(boxes.on_host());
+    report.bodies = boxes.count();
+    report.pairs = pairs.view().size();
+    report.box_tests = counts.box_tests;
+    report.algorithm = row.name;
+    report.skipped.pairs_filtered = counts.pairs_filtered;
+    report.skipped.static_pairs = counts.static_pairs;
+    for (const auto& opened : context.devices)
+        if (opened != nullptr) report.peak_device_bytes += opened->report().peak_bytes;
+    report.ms.total = total.ms();
+    return pairs.view();
+}
+
+BroadPhase::BroadPhase(Context& context, BroadPhaseOptions options)
+    : impl_(std::make_unique<Impl>(context, std::move(options))) {}
+BroadPhase::~BroadPhase() = default;
+BroadPhase::BroadPhase(BroadPhase&& other) noexcept = default;
+BroadPhase& BroadPhase::operator=(BroadPhase&& other) noexcept = default;
+
+View<const Pair> BroadPhase::find(View<const Aabb> boxes, const FilterColumns& filters) {
+    check_count(boxes.size());
+    detail::BoxInput input(boxes, impl_->staging);
+    return impl_->find(impl_->choose(boxes.size()), input, {filters, 0}, true);
+}
+
+const Report& BroadPhase::report() const noexcept {
+    return impl_->report;
+}
+
+View<const Pair> find_pairs(BroadPhase& broad_phase, cl_mem boxes, std::size_t count, std::size_t first,
+                            const FilterColumns& filters) {
+    check_count(count);
+    BroadPhase::Impl& impl = broad_phase.impl();
+    detail::Device& device = impl.device();
+    std::size_t bytes = 0;
+    cl_context context = nullptr;
+    detail::check(clGetMemObjectInfo(boxes, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr), "clGetMemObjectInfo");
+    detail::check(clGetMemObjectInfo(boxes, CL_MEM_CONTEXT, sizeof context, &context, nullptr), "clGetMemObjectInfo");
+    if (context != device.context())
+        throw Error(ErrorCode::InvalidArgument,
+                    "the buffer of boxes belongs to another OpenCL context than the broad phase");
+    if (first > bytes / sizeof(Aabb) || count > bytes / sizeof(Aabb) - first)
+        throw Error(ErrorCode::InvalidArgument, "the buffer of boxes has " + std::to_string(bytes) + " bytes; " +
+                                                    std::to_string(count) + " boxes from box " + std::to_string(first) +
+                                                    " on are 24 bytes each");
+    detail::BoxInput input(device, boxes, first, static_cast<std::uint32_t>(count));
+    return impl.find(impl.choose(count), input, {filters, 0}, true);
+}
+
+}  // namespace clinch

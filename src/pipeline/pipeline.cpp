@@ -1,0 +1,177 @@
+#include "clinch/pipeline.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "src/broad_phase/broad_phase_impl.hpp"
+#include "src/broad_phase/planes.hpp"
+#include "src/device/stopwatch.hpp"
+#include "src/scene/bounds.hpp"
+#include "src/scene/scene_impl.hpp"
+
+namespace clinch {
+
+struct StepResult::Impl {
+    Impl(Context& context, PipelineOptions options)
+        : broad(context, options.broad_phase), measure(options.broad_phase.measure_stages), result(*this) {}
+
+    BroadPhase broad;
+    bool measure;
+    std::optional<detail::DeviceBounds> device_bounds;
+    std::optional<detail::HostBounds> host_bounds;
+    detail::PlanePairs planes;
+    std::uint64_t filter_version = 0;  // names the filters of a scene for the broad phase; 0: none seen
+    std::uint64_t scene_filter_version = 0;
+    std::shared_ptr<const int> scene_identity;
+
+    View<const Pair> pairs;
+    std::vector<Pair> merged;  // holds `pairs` when planes added to them
+    bool on_device = false;    // where the boxes of the last step are
+    std::size_t rows = 0;
+    std::optional<std::vector<Aabb>> boxes_read;
+    Report report;
+    StepResult result;
+
+    void step(const Scene& scene);
+    void start_afresh();
+    detail::FilterInput filters(const Scene& scene);
+    View<const Pair> find_on_device(const Scene& scene, const detail::AlgorithmRow& row, std::size_t& changed);
+    View<const Pair> find_on_host(const Scene& scene, const detail::AlgorithmRow& row, std::size_t& changed);
+    void add_plane_pairs(const Scene& scene);
+    View<const Aabb> boxes();
+};
+
+void StepResult::Impl::start_afresh() {
+    device_bounds.reset();
+    host_bounds.reset();
+    pairs = {};
+    merged.clear();
+    boxes_read.reset();
+    rows = 0;
+    on_device = false;
+    scene_identity.reset();
+}
+
+// The filters of a scene, under a number that changes when they may have.
+detail::FilterInput StepResult::Impl::filters(const Scene& scene) {
+    if (scene.impl().filters_default()) return {};
+    if (scene_identity != scene.impl().identity || scene_filter_version != scene.filter_version()) {
+        scene_identity = scene.impl().identity;
+        scene_filter_version = scene.filter_version();
+        ++filter_version;
+    }
+    const SceneColumns columns = scene.columns();
+    return {{columns.group.data(), columns.mask.data(), columns.motion.data()}, filter_version};
+}
+
+View<const Pair> StepResult::Impl::find_on_device(const Scene& scene, const detail::AlgorithmRow& row,
+                                                  std::size_t& changed) {
+    detail::Device& device = broad.impl().device();
+    if (!device_bounds) device_bounds.emplace(device);
+    const detail::Stopwatch upload;
+    changed = device_bounds->upload(scene);
+    if (measure) device.finish();
+    report.ms.upload = upload.ms();
+    const detail::Stopwatch bounds;
+    device_bounds->compute();
+    if (measure) device.finish();
+    report.ms.bounds = bounds.ms();
+    detail::BoxInput input(device, device_bounds->boxes().handle(), 0, static_cast<std::uint32_t>(rows));
+    return broad.impl().find(row, input, filters(scene), false);
+}
+
+View<const Pair> StepResult::Impl::find_on_host(const Scene& scene, const detail::AlgorithmRow& row,
+                                                std::size_t& changed) {
+    if (!host_bounds) host_bounds.emplace();
+    const detail::Stopwatch bounds;
+    changed = host_bounds->update(scene);
+    report.ms.bounds = bounds.ms();
+    detail::BoxInput input(host_bounds->boxes(), broad.impl().staging);
+    return broad.impl().find(row, input, filters(scene), false);
+}
+
+// Planes have no box; their pairs join those of the boxes here.
+void StepResult::Impl::add_plane_pairs(const Scene& scene) {
+    const auto& plane_rows = scene.impl().plane_rows();
+    if (plane_rows.empty()) return;
+    const detail::Stopwatch watch;
+    const std::vector<detail::WorldPlane> in_world = detail::world_planes(scene, plane_rows);
+    detail::FindCounts counts;
+    const std::vector<Pair>& found = on_device ? planes.find(broad.impl().device(), in_world, device_bounds->boxes(),
+                                                             static_cast<std::uint32_t>(rows), filters(scene), counts)
+                                               : planes.find(in_world, host_bounds->boxes(), filters(scene), counts);
+    report.skipped.pairs_filtered += counts.pairs_filtered;
+    report.skipped.static_pairs += counts.static_pairs;
+    if (!found.empty()) {
+        merged.resize(pairs.size() + found.size());
+        std::merge(pairs.begin(), pairs.end(), found.begin(), found.end(), merged.begin());
+        detail::check_limit(merged.size(), broad.impl().options);
+        pairs = merged;
+    }
+    report.ms.broad += watch.ms();
+}
+
+void StepResult::Impl::step(const Scene& scene) {
+    const detail::Stopwatch total;
+    pairs = {};
+    boxes_read.reset();
+    rows = scene.row_count();
+    report = Report{};
+    report.rejected = scene.rejected();
+    const detail::AlgorithmRow& row = broad.impl().choose(rows);
+    on_device = row.needs_device;
+    std::size_t changed = 0;
+    pairs = on_device ? find_on_device(scene, row, changed) : find_on_host(scene, row, changed);
+
+    const Report& found = broad.report();
+    report.algorithm = found.algorithm;
+    report.box_tests = found.box_tests;
+    report.skipped = found.skipped;
+    report.skipped.bounds = rows - std::min(rows, changed);
+    report.ms.broad = found.ms.broad;
+    report.ms.download = found.ms.download;
+    report.peak_device_bytes = found.peak_device_bytes;
+    add_plane_pairs(scene);
+    report.bodies = scene.body_count();
+    report.pairs = pairs.size();
+    report.ms.total = total.ms();
+}
+
+View<const Aabb> StepResult::Impl::boxes() {
+    if (!on_device) return host_bounds ? host_bounds->boxes() : View<const Aabb>{};
+    if (!boxes_read) {
+        boxes_read.emplace(rows);
+        broad.impl().device().read(device_bounds->boxes(), boxes_read->data(), rows * sizeof(Aabb));
+    }
+    return *boxes_read;
+}
+
+View<const Pair> StepResult::pairs() const {
+    return impl_->pairs;
+}
+View<const Aabb> StepResult::boxes() const {
+    return impl_->boxes();
+}
+const Report& StepResult::report() const noexcept {
+    return impl_->report;
+}
+
+Pipeline::Pipeline(Context& context, PipelineOptions options)
+    : impl_(std::make_unique<StepResult::Impl>(context, std::move(options))) {}
+Pipeline::~Pipeline() = default;
+Pipeline::Pipeline(Pipeline&& other) noexcept = default;
+Pipeline& Pipeline::operator=(Pipeline&& other) noexcept = default;
+
+const StepResult& Pipeline::step(const Scene& scene) {
+    try {
+        impl_->step(scene);
+    } catch (...) {
+        impl_->start_afresh();
+        throw;
+    }
+    return impl_->result;
+}
+
+}  // namespace clinch
