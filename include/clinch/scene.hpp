@@ -59,7 +59,8 @@ struct SceneColumns {
 /// A set of bodies. A value type without a device: any number of pipelines may step the same scene.
 /// Values that make a body meaningless (NaN, negative size, ...) are accepted here and reported by
 /// rejected(); wrong calls (a body or shape that does not exist) throw Error InvalidArgument.
-/// Not thread-safe: one thread changes a scene, or many read it.
+/// Not thread-safe: one thread changes a scene, or many read it. A copy has the same bodies, ids and
+/// versions but counts as another scene; a moved-from scene may only be assigned to or destroyed.
 class Scene {
 public:
     Scene();
@@ -72,7 +73,8 @@ public:
     /// Stores a shape and returns its name. Never rejects: bodies of a meaningless shape are. Cost:
     /// as why_invalid; of a Hull or Mesh, its outermost points are found once here.
     ShapeId add_shape(Shape shape);
-    /// Replaces a shape; every body of it counts as changed (deforming bodies).
+    /// Replaces a shape; every body of it counts as changed (deforming bodies). Cost: as add_shape,
+    /// plus the bodies of it.
     void set_shape(ShapeId id, Shape shape);
     const Shape& shape(ShapeId id) const;
     std::size_t shape_count() const noexcept;
@@ -93,7 +95,7 @@ public:
     void set_filter(BodyId id, std::uint32_t group, std::uint32_t mask);
 
     /// Bulk setters: `count` rows from row `first` on, from the caller's array of count x 3 numbers
-    /// (x y z) or count x 4 (w x y z). The array is copied. Only rows whose numbers differ count as
+    /// (x y z) or count x 4 (w x y z). The array is copied. Only rows whose numbers differ, in any bit, count as
     /// changed. Rows past the last, or of removed bodies, throw and change nothing.
     void set_positions(const double* xyz, std::size_t count, std::size_t first = 0);
     void set_positions(const float* xyz, std::size_t count, std::size_t first = 0);
@@ -118,12 +120,13 @@ public:
 
     /// Grows with every change of anything; equal versions of one scene mean equal content.
     std::uint64_t version() const noexcept;
-    /// version() of the last change of this row's shape, pose, margin or life (what its box needs).
+    /// version() of the last change of this row's shape, pose, margin or life (what its box needs), or
+    /// of its being rejected or not. A row past the last is InvalidArgument.
     std::uint64_t row_version(std::size_t row) const;
     /// Appends to `rows` the rows whose row_version is greater than `since`, ascending. Cost: the
     /// changed rows, plus one look for every 1,024 rows.
     void changed_rows(std::uint64_t since, std::vector<std::uint32_t>& rows) const;
-    /// version() of the last change of any group, mask or motion.
+    /// version() of the last change of any group, mask or motion (a new body is one).
     std::uint64_t filter_version() const noexcept;
 
     /// The library's own view of this scene; not for users.

@@ -53,7 +53,8 @@ struct Hull {
     std::vector<Vec3> points;
 };
 
-/// Triangles over vertices; at least one triangle, each index below vertices.size().
+/// Triangles over vertices; at least one triangle, each index below vertices.size(). Vertices that no
+/// triangle uses must be finite and are otherwise ignored.
 struct Mesh {
     std::vector<Vec3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -68,7 +69,8 @@ struct ShapeId {
 };
 
 /// Why `shape` can bear no body, as one clause ("radius is -1 and must be > 0"), or empty if it can.
-/// Cost: linear in the shape's numbers; a Hull is built (O(n log n) for n points).
+/// Cost: linear in the shape's numbers. Points of a Hull lie in one plane when none is farther from it
+/// than rounding their coordinates to float64 may have moved it (7e-15 of the largest coordinate).
 std::string why_invalid(const Shape& shape);
 
 }  // namespace clinch
