@@ -28,8 +28,8 @@ struct BroadPhaseOptions {
     Order order = Order::Sorted;
     /// More pairs than this is Error LimitExceeded, which names the true count. Nothing is ever cut off.
     std::uint64_t max_pairs = UINT64_MAX;
-    /// Device memory for work in between (bit buffers); larger means fewer passes. At least what
-    /// one row of boxes needs is taken.
+    /// Device memory for work in between (bit buffers); larger means fewer passes. Pairs wait in up to
+    /// four times as much. At least what one row of boxes needs is taken.
     std::size_t scratch_bytes = std::size_t{64} << 20;
     /// Called now and then during long work with the share done, 0 to 1; may throw to stop the work.
     std::function<void(double)> progress;

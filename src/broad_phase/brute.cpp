@@ -14,7 +14,6 @@ namespace {
 constexpr std::uint32_t block = 512;                                         // BLOCK of the kernel
 constexpr std::size_t bits_bytes = block / 8;                                // of one entry: a row against a block
 constexpr std::size_t entry_bytes = bits_bytes + 2 * sizeof(std::uint32_t);  // bits, count, offset
-constexpr std::size_t most_fill_bytes = std::size_t{256} << 20;
 
 // Rows [first, end) that are worked on at once, and the tiles they touch.
 struct Batch {
@@ -103,8 +102,10 @@ void Brute::fill_entries(const Batch& batch, std::uint32_t first, std::uint32_t 
 
 void Brute::fill(const Batch& batch, std::uint32_t found, bool only_one, PairList& pairs, FindCounts& counts) {
     if (found == 0) return;
-    const auto most = static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(most_fill_bytes, device_.info().max_allocation) / sizeof(Pair));
+    // Pairs of one launch: at least a whole entry.
+    const std::uint64_t wanted = std::max<std::uint64_t>(4 * options_.scratch_bytes / sizeof(Pair), block);
+    const auto most = static_cast<std::uint32_t>(std::min({wanted, device_.info().max_allocation / sizeof(Pair),
+                                                           std::uint64_t{std::numeric_limits<std::uint32_t>::max()}}));
     if (found <= most) {
         fill_entries(batch, 0, batch.entries(), found);
         const Stopwatch watch;

@@ -1,0 +1,319 @@
+// What every broad-phase algorithm must do, for each row of the registry on each device.
+#include <catch2/catch.hpp>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "bench/scenes/boxes.hpp"
+#include "clinch/broad_phase.hpp"
+#include "clinch/error.hpp"
+#include "tests/broad_phase/oracle.hpp"
+#include "tests/device/devices.hpp"
+#include "tests/random.hpp"
+
+using namespace clinch;
+
+namespace {
+
+bool same(View<const Pair> found, const std::vector<Pair>& expected) {
+    return found.size() == expected.size() &&
+           (expected.empty() || std::memcmp(found.data(), expected.data(), expected.size() * sizeof(Pair)) == 0);
+}
+
+// Runs `check` with each algorithm on each device, built for each number of lanes.
+void with_each(const std::vector<std::uint32_t>& lanes, std::size_t scratch,
+               const std::function<void(BroadPhase&)>& check) {
+    for (std::uint32_t device = 0; device < list_devices().size(); ++device)
+        for (const std::uint32_t lane_count : lanes)
+            for (const std::string& name : broad_phase_names()) {
+                Context context = test::with_lanes(device, lane_count);
+                BroadPhaseOptions options;
+                options.algorithm = name;
+                options.scratch_bytes = scratch;
+                BroadPhase broad_phase(context, options);
+                INFO("algorithm " << name << ", device " << device << ", lanes " << lane_count << ", scratch "
+                                  << scratch);
+                check(broad_phase);
+                CHECK(broad_phase.report().algorithm == name);
+            }
+}
+
+const std::vector<std::uint32_t> all_lanes{1, 4, 8, 16};
+constexpr std::size_t default_scratch = std::size_t{64} << 20;
+
+struct Filters {
+    std::vector<std::uint32_t> group, mask;
+    std::vector<Motion> motion;
+    FilterColumns columns() const { return {group.data(), mask.data(), motion.data()}; }
+};
+
+Filters random_filters(std::size_t n, test::Random& random) {
+    Filters f;
+    for (std::size_t i = 0; i < n; ++i) {
+        f.group.push_back(1u << random.below(4));
+        f.mask.push_back(static_cast<std::uint32_t>(random.below(16)) | 0x80000000u);
+        f.motion.push_back(static_cast<Motion>(random.below(4)));
+    }
+    return f;
+}
+
+// Boxes of many sizes, some flat, some touching exactly, some no boxes.
+std::vector<Aabb> hostile_boxes(std::size_t n, test::Random& random) {
+    constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    std::vector<Aabb> boxes(n);
+    const double far = random.below(3) == 0 ? 1e7 : 0.0;
+    for (Aabb& box : boxes) {
+        for (int d = 0; d < 3; ++d) {
+            const double size = random.below(4) == 0 ? 0.0 : static_cast<double>(random.below(3));
+            box.min[d] = static_cast<float>(far + static_cast<double>(random.below(12)));
+            box.max[d] = static_cast<float>(box.min[d] + size);
+        }
+        const std::size_t d = random.below(3);
+        switch (random.below(40)) {
+            case 0:
+                box.min[d] = nan;
+                break;
+            case 1:
+                box.max[d] = nan;
+                break;
+            case 2:
+                box.max[d] = inf;
+                break;
+            case 3:
+                box.min[d] = -inf;
+                break;
+            case 4:
+                box.max[d] = box.min[d] - 1.0f;
+                break;
+            case 5:
+                box.min[d] = box.max[d] = std::numeric_limits<float>::max();
+                break;
+            case 6:
+                box.min[d] = box.max[d] = -0.0f;
+                break;
+            case 7:
+                box.min[d] = -1e-40f, box.max[d] = 1e-40f;
+                break;
+            default:
+                break;
+        }
+    }
+    return boxes;
+}
+
+void check_scene(BroadPhase& broad_phase, const std::vector<Aabb>& boxes, const FilterColumns& filters,
+                 const std::vector<Pair>& expected) {
+    const View<const Pair> found = broad_phase.find(boxes, filters);
+    CHECK(same(found, expected));
+    CHECK(broad_phase.report().pairs == expected.size());
+    CHECK(broad_phase.report().bodies == boxes.size());
+}
+
+}  // namespace
+
+TEST_CASE("all algorithms give the oracle's bytes, small", "[device][small]") {
+    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 1000, 7);
+    const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+    REQUIRE(expected.size() > 40);
+    test::Random random(31);
+    const Filters filters = random_filters(boxes.size(), random);
+    const std::vector<Pair> filtered = test::pairs_by_hand(boxes, filters.columns());
+    with_each({1, 16}, default_scratch, [&](BroadPhase& broad_phase) {
+        check_scene(broad_phase, boxes, {}, expected);
+        check_scene(broad_phase, boxes, filters.columns(), filtered);
+    });
+}
+
+TEST_CASE("all algorithms give the oracle's bytes on every kind of scene", "[device]") {
+    for (const scenes::BoxKind& kind : scenes::box_kinds()) {
+        INFO(kind.name);
+        const std::vector<Aabb> boxes = scenes::make_boxes(kind.name, 3000, 5);
+        const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+        with_each(all_lanes, default_scratch,
+                  [&](BroadPhase& broad_phase) { check_scene(broad_phase, boxes, {}, expected); });
+    }
+}
+
+TEST_CASE("10,000 boxes of uniform: the oracle's bytes", "[device]") {
+    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 10000, 1);
+    const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+    REQUIRE(expected.size() > 8000);
+    for (std::uint32_t device = 0; device < list_devices().size(); ++device)
+        with_each({list_devices()[device].lanes}, default_scratch,
+                  [&](BroadPhase& broad_phase) { check_scene(broad_phase, boxes, {}, expected); });
+}
+
+TEST_CASE("200 random scenes of random sizes, hostile boxes and filters", "[device]") {
+    const std::uint64_t seed = 32;
+    test::Random random(seed);
+    struct Case {
+        std::vector<Aabb> boxes;
+        Filters filters;
+        bool filtered;
+    };
+    std::vector<Case> cases;
+    for (int i = 0; i < 200; ++i) {
+        Case c;
+        c.boxes = hostile_boxes(random.below(i % 20 == 0 ? 1800 : 300), random);
+        c.filters = random_filters(c.boxes.size(), random);
+        c.filtered = random.below(2) == 0;
+        cases.push_back(std::move(c));
+    }
+    std::vector<std::vector<Pair>> expected;
+    for (const Case& c : cases)
+        expected.push_back(test::pairs_by_hand(c.boxes, c.filtered ? c.filters.columns() : FilterColumns{}));
+    // Small scratch memory: several batches and several fills even for small scenes.
+    for (const std::size_t scratch : {default_scratch, std::size_t{20000}})
+        with_each(all_lanes, scratch, [&](BroadPhase& broad_phase) {
+            for (std::size_t i = 0; i < cases.size(); ++i) {
+                INFO("seed " << seed << ", case " << i);
+                check_scene(broad_phase, cases[i].boxes,
+                            cases[i].filtered ? cases[i].filters.columns() : FilterColumns{}, expected[i]);
+            }
+        });
+}
+
+TEST_CASE("no box, one box, two equal boxes, all boxes at one place", "[device][small]") {
+    const Aabb unit{{0, 0, 0}, {1, 1, 1}};
+    const std::size_t many = 700;
+    const std::vector<Aabb> all(many, unit);
+    std::vector<Pair> every;
+    for (std::uint32_t a = 0; a < many; ++a)
+        for (std::uint32_t b = a + 1; b < many; ++b) every.push_back({a, b});
+    with_each({1, 8}, 30000, [&](BroadPhase& broad_phase) {
+        CHECK(broad_phase.find(View<const Aabb>{}).empty());
+        CHECK(broad_phase.find({&unit, 1}).empty());
+        CHECK(broad_phase.report().rejected.empty());
+        check_scene(broad_phase, {unit, unit}, {}, {{0, 1}});
+        check_scene(broad_phase, all, {}, every);
+    });
+}
+
+TEST_CASE("boxes that touch are pairs, boxes one ulp apart are not", "[device][small]") {
+    const float next = std::nextafter(1.0f, 2.0f);
+    std::vector<Aabb> boxes{{{0, 0, 0}, {1, 1, 1}}};
+    for (int d = 0; d < 3; ++d) {
+        Aabb touching{{0, 0, 0}, {1, 1, 1}}, apart = touching;
+        touching.min[d] = 1.0f, touching.max[d] = 2.0f;
+        apart.min[d] = next, apart.max[d] = 2.0f;
+        boxes.push_back(touching);
+        boxes.push_back(apart);
+    }
+    const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+    CHECK(std::count_if(expected.begin(), expected.end(), [](const Pair& p) { return p.a == 0; }) == 3);
+    with_each({1, 16}, default_scratch,
+              [&](BroadPhase& broad_phase) { check_scene(broad_phase, boxes, {}, expected); });
+}
+
+TEST_CASE("boxes that are no boxes are named with the reason", "[device]") {
+    constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    const Aabb unit{{0, 0, 0}, {1, 1, 1}};
+    std::vector<Aabb> boxes(6, unit);
+    boxes[1].min[1] = nan;
+    boxes[3].max[2] = inf;
+    boxes[4].min[0] = 2.0f;
+    with_each({1, 16}, default_scratch, [&](BroadPhase& broad_phase) {
+        check_scene(broad_phase, boxes, {}, {{0, 2}, {0, 5}, {2, 5}});
+        const auto& rejected = broad_phase.report().rejected;
+        REQUIRE(rejected.size() == 3);
+        CHECK(rejected[0].body == 1);
+        CHECK(rejected[0].why == "min y is nan and must be finite");
+        CHECK(rejected[1].body == 3);
+        CHECK(rejected[1].why == "max z is inf and must be finite");
+        CHECK(rejected[2].body == 4);
+        CHECK(rejected[2].why == "min x is 2 and must not be greater than max x, 1");
+        broad_phase.find({&boxes[4], 1});
+        CHECK(broad_phase.report().rejected.size() == 1);
+    });
+}
+
+TEST_CASE("what filters drop is counted", "[device]") {
+    const std::vector<Aabb> boxes(4, Aabb{{0, 0, 0}, {1, 1, 1}});
+    const std::vector<std::uint32_t> group{1, 1, 2, 1}, mask{1, 1, 0xff, 0xff};
+    const std::vector<Motion> motion{Motion::Static, Motion::Sleeping, Motion::Dynamic, Motion::Kinematic};
+    with_each({1, 16}, default_scratch, [&](BroadPhase& broad_phase) {
+        // 2 is in group 2, which 0 and 1 do not want; 0 and 1 do not move.
+        check_scene(broad_phase, boxes, {group.data(), mask.data(), motion.data()}, {{0, 3}, {1, 3}, {2, 3}});
+        CHECK(broad_phase.report().skipped.pairs_filtered == 2);
+        CHECK(broad_phase.report().skipped.static_pairs == 1);
+    });
+}
+
+TEST_CASE("a limit on pairs is an error that names the true count", "[device]") {
+    const std::vector<Aabb> boxes(600, Aabb{{0, 0, 0}, {1, 1, 1}});
+    for (std::uint32_t device = 0; device < list_devices().size(); ++device)
+        for (const std::string& name : broad_phase_names()) {
+            INFO(name);
+            Context context = test::with_lanes(device, 8);
+            BroadPhaseOptions options;
+            options.algorithm = name;
+            options.max_pairs = 1000;
+            options.scratch_bytes = 20000;
+            BroadPhase broad_phase(context, options);
+            try {
+                broad_phase.find(boxes);
+                FAIL("no error");
+            } catch (const Error& error) {
+                CHECK(error.code() == ErrorCode::LimitExceeded);
+                CHECK(std::string(error.what()).find("179700") != std::string::npos);
+            }
+            CHECK(broad_phase.find({boxes.data(), 45}).size() == 990);  // and goes on working
+        }
+}
+
+TEST_CASE("progress rises to the end and may stop the work", "[device]") {
+    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 4000, 3);
+    Context context = test::with_lanes(0, 8);
+    double last = 0.0;
+    int calls = 0;
+    bool stop = false;
+    BroadPhaseOptions options;
+    options.algorithm = "brute";
+    options.scratch_bytes = 200000;
+    options.progress = [&](double share) {
+        CHECK(share >= last);
+        CHECK(share <= 1.0);
+        last = share;
+        ++calls;
+        if (stop) throw std::runtime_error("stopped");
+    };
+    BroadPhase broad_phase(context, options);
+    const std::size_t pairs = broad_phase.find(boxes).size();
+    CHECK(last == 1.0);
+    CHECK(calls > 3);
+    stop = true;
+    last = 0.0;
+    CHECK_THROWS_WITH(broad_phase.find(boxes), "stopped");
+    stop = false;
+    last = 0.0;
+    CHECK(broad_phase.find(boxes).size() == pairs);
+}
+
+TEST_CASE("an unknown algorithm and a missing device are named", "[host]") {
+    Context context = Context::host_only();
+    BroadPhaseOptions options;
+    options.algorithm = "fastest";
+    CHECK_THROWS_WITH(BroadPhase(context, options),
+                      "there is no broad-phase algorithm 'fastest'; accepted are auto, brute, host-brute");
+    options.algorithm = "brute";
+    CHECK_THROWS_AS(BroadPhase(context, options), Error);
+    options.algorithm = "auto";
+    BroadPhase broad_phase(context, options);
+    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 1000, 7);
+    CHECK(same(broad_phase.find(boxes), test::pairs_by_hand(boxes)));
+    CHECK(broad_phase.report().algorithm == "host-brute");
+}
+
+TEST_CASE("200,000 boxes in bounded memory", "[device][.large]") {
+    const std::vector<Aabb> boxes = scenes::make_boxes("density", 200000, 2);
+    const std::vector<Pair> expected = test::pairs_by_sweep(boxes);
+    Context context;
+    BroadPhaseOptions options;
+    options.algorithm = "brute";
+    BroadPhase broad_phase(context, options);
+    CHECK(same(broad_phase.find(boxes), expected));
+    CHECK(broad_phase.report().box_tests == 200000ull * 199999 / 2);
+    CHECK(broad_phase.report().peak_device_bytes < 90u << 20);
+}
