@@ -1,0 +1,38 @@
+// A file read from front to back, with the checks that every format needs.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace clinch::io {
+
+/// A regular file opened for reading; closed at its end.
+class InputFile {
+public:
+    /// A file that is missing, no regular file, or unreadable is InputError.
+    explicit InputFile(std::string path);
+
+    const std::string& path() const noexcept { return path_; }
+    /// Length in bytes when it was opened.
+    std::uint64_t size() const noexcept { return size_; }
+    /// The next `bytes` bytes; fewer than that left is InputError.
+    void read(void* target, std::size_t bytes);
+
+private:
+    struct Close {
+        void operator()(std::FILE* file) const noexcept {
+            std::fclose(file);
+        }  // NOLINT(cppcoreguidelines-owning-memory)
+    };
+    std::string path_;
+    std::uint64_t size_ = 0;
+    std::unique_ptr<std::FILE, Close> file_;
+};
+
+/// The whole content of a file. Errors as InputFile.
+std::string read_text(const std::string& path);
+
+}  // namespace clinch::io

@@ -1,0 +1,86 @@
+#include "tools/program/options.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <vector>
+
+#include "tools/io/error.hpp"
+#include "tools/io/text.hpp"
+
+namespace clinch::program {
+namespace {
+
+constexpr std::uint64_t most_repeats = 1000000;
+
+std::vector<std::string> algorithm_names() {
+    std::vector<std::string> names = broad_phase_names();
+    names.insert(names.begin(), "auto");
+    return names;
+}
+
+void check_algorithm(const std::string& name) {
+    const std::vector<std::string> names = algorithm_names();
+    if (std::find(names.begin(), names.end(), name) == names.end())
+        throw io::InputError("--algorithm is '" + name + "'; " + io::join(names) + " are accepted");
+}
+
+/// Indices past the last device would otherwise be passed over in silence.
+void check_devices(const DeviceFilter& filter) {
+    if (filter.indices.empty()) return;
+    const std::size_t found = list_devices().size();
+    for (const std::uint32_t index : filter.indices)
+        if (found > 0 && index >= found)
+            throw io::InputError("--devices names device " + std::to_string(index) + "; 0 to " +
+                                 std::to_string(found - 1) + " are there");
+}
+
+}  // namespace
+
+void add_step_options(CLI::App& command, StepTexts& t) {
+    command
+        .add_option("--devices", t.devices,
+                    "Devices to use: indices from 'clinch devices' (0,2), a type (cpu, gpu), or all")
+        ->capture_default_str();
+    command.add_option("--algorithm", t.algorithm, "Broad phase: " + io::join(algorithm_names()))
+        ->capture_default_str();
+    auto* precision =
+        command.add_option("--precision", t.precision, "Narrow phase, nothing to pairs: 0 (fastest) to 1 (most exact)")
+            ->capture_default_str();
+    command
+        .add_option("--tolerance", t.tolerance,
+                    "Narrow phase, nothing to pairs: instead, an absolute error in scene units")
+        ->excludes(precision);
+    command
+        .add_option("--contacts-per-pair", t.contacts_per_pair,
+                    "Narrow phase, nothing to pairs: points of a pair's manifold, 1 to 8")
+        ->capture_default_str();
+    command.add_option("--order", t.order, "sorted, or any: rows as they come, faster, may differ from run to run")
+        ->capture_default_str();
+    command.add_option("--repeat", t.repeat, "Times the step is run, after a warming run, for timing")
+        ->capture_default_str();
+    command.add_option("--stats", t.stats, "Write statistics to this JSON file");
+    command.add_flag("--strict", t.strict, "A rejected body is an error instead of a warning");
+    command.add_option("--seed", t.seed, "Seed of everything random (nothing is in pairs)")->capture_default_str();
+}
+
+StepOptions check_step_options(const StepTexts& t) {
+    StepOptions options;
+    check_algorithm(t.algorithm);
+    options.algorithm = t.algorithm;
+    options.host_only = t.algorithm.rfind("host-", 0) == 0;
+    options.devices = DeviceFilter::parse(t.devices, "--devices");
+    if (!options.host_only) check_devices(options.devices);
+    io::parse_number(t.precision, "--precision", 0.0, 1.0);
+    if (!t.tolerance.empty()) io::parse_number(t.tolerance, "--tolerance", 0.0, std::numeric_limits<double>::max());
+    io::parse_whole(t.contacts_per_pair, "--contacts-per-pair", 1, 8);
+    if (t.order != "sorted" && t.order != "any")
+        throw io::InputError("--order is '" + t.order + "'; sorted and any are accepted");
+    options.order = t.order == "any" ? Order::Any : Order::Sorted;
+    options.repeat = io::parse_whole(t.repeat, "--repeat", 1, most_repeats);
+    io::parse_whole(t.seed, "--seed", 0, std::numeric_limits<std::uint64_t>::max());
+    options.stats = t.stats;
+    options.strict = t.strict;
+    return options;
+}
+
+}  // namespace clinch::program

@@ -1,0 +1,45 @@
+// Options that every command which runs a step has.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <string>
+
+#include "clinch/broad_phase.hpp"
+#include "clinch/device.hpp"
+
+namespace clinch::program {
+
+/// As typed; read and checked by check_step_options.
+struct StepTexts {
+    std::string devices = "all";
+    std::string algorithm = "auto";
+    std::string precision = "0.5";
+    std::string tolerance;
+    std::string contacts_per_pair = "4";
+    std::string order = "sorted";
+    std::string repeat = "1";
+    std::string seed = "0";
+    std::string stats;
+    bool strict = false;
+};
+
+/// What the texts mean.
+struct StepOptions {
+    DeviceFilter devices;
+    std::string algorithm;
+    bool host_only = false;  ///< the algorithm needs no device
+    Order order = Order::Sorted;
+    std::uint64_t repeat = 1;
+    std::string stats;  ///< empty: none asked for
+    bool strict = false;
+};
+
+/// Adds the options to a subcommand; `texts` must outlive the parsing.
+void add_step_options(CLI::App& command, StepTexts& texts);
+
+/// Reads and checks all of them, also those that matter to the narrow phase alone. Throws io::InputError or
+/// Error InvalidArgument, which names the option, what was found and what is accepted.
+StepOptions check_step_options(const StepTexts& texts);
+
+}  // namespace clinch::program

@@ -1,0 +1,64 @@
+// clinch scene: writes a generated scene.
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/scenes/boxes.hpp"
+#include "tools/io/error.hpp"
+#include "tools/io/npy.hpp"
+#include "tools/io/output_file.hpp"
+#include "tools/io/text.hpp"
+#include "tools/program/command.hpp"
+#include "tools/program/progress.hpp"
+
+namespace clinch::program {
+namespace {
+
+struct Texts {
+    std::string kind, count, seed = "0", output;
+};
+
+/// Writes box after box, so that memory does not limit the count.
+int run(const Texts& texts) {
+    constexpr std::size_t block = 4096;
+    const std::uint64_t count = io::parse_whole(texts.count, "--count", 0, io::max_bodies);
+    const std::uint64_t seed = io::parse_whole(texts.seed, "--seed", 0, std::numeric_limits<std::uint64_t>::max());
+    scenes::BoxGenerator generator(texts.kind, count, seed);
+    if (io::ending(texts.output) != ".npy")
+        throw io::InputError("-o is '" + texts.output + "'; the ending .npy is accepted for the kind " + texts.kind);
+
+    io::OutputFile file(texts.output);
+    file.write(io::npy_header("<f4", {count, 6}));
+    ProgressBar bar("boxes");
+    std::vector<Aabb> boxes;
+    for (std::uint64_t made = 0; made < count; made += boxes.size()) {
+        boxes.resize(static_cast<std::size_t>(std::min<std::uint64_t>(block, count - made)));
+        for (Aabb& box : boxes) box = generator.next();
+        file.write(boxes.data(), boxes.size() * sizeof(Aabb));
+        bar.show(static_cast<double>(made) / static_cast<double>(count));
+    }
+    file.commit();
+    return 0;
+}
+
+}  // namespace
+
+Command add_scene_command(CLI::App& app) {
+    auto texts = std::make_shared<Texts>();
+    CLI::App* const command =
+        app.add_subcommand("scene", "Write a generated scene of boxes, the same on every machine");
+    std::string kinds = "Kinds:";
+    for (const scenes::BoxKind& kind : scenes::box_kinds()) kinds += std::string("\n  ") + kind.name + ": " + kind.what;
+    command->footer(kinds);
+    command->add_option("KIND", texts->kind, "What to make: see below")->required();
+    command->add_option("--count", texts->count, "Number of bodies, 0 to " + std::to_string(io::max_bodies))
+        ->required();
+    command->add_option("--seed", texts->seed, "Seed of everything random")->capture_default_str();
+    command->add_option("-o,--output", texts->output, "File to write: .npy")->required();
+    return {command, [texts] { return run(*texts); }};
+}
+
+}  // namespace clinch::program
