@@ -35,7 +35,7 @@ inline uint column_of(uint w, uint t) { return (w / LANES) * PASS + t * LANES + 
 
 // Hits of the box `row` against PASS columns from `c` on: bit t of lane l is column t * LANES + l.
 // Columns before step `t` are left out.
-inline uintN test_row(global const float* restrict columns, uint stride, uint row, uint c, uint t) {
+inline uintN test_row(global const float* columns, uint stride, uint row, uint c, uint t) {
     global const float* r = columns + row;
     const ulong s = stride;
     const floatN row_min_x = r[0], row_min_y = r[s], row_min_z = r[2 * s];
@@ -54,7 +54,7 @@ inline uintN test_row(global const float* restrict columns, uint stride, uint ro
 #if FILTERS
 // Filters come as (group, mask, can move, unused) a body. Clears the bits of pairs that do not
 // pass; adds up what was dropped: x by group and mask, y since neither can move.
-inline uint filter_word(uint hits, uint row, uint block, uint w, global const uint4* restrict filters, uint2* dropped) {
+inline uint filter_word(uint hits, uint row, uint block, uint w, global const uint4* filters, uint2* dropped) {
     uint4 f = filters[row];
     uint kept = hits;
     for (uint left = hits; left != 0; left &= left - 1) {
@@ -71,10 +71,10 @@ inline uint filter_word(uint hits, uint row, uint block, uint w, global const ui
 #endif
 
 // Tests one row against one block and stores the entry. Columns up to the row itself do not count.
-inline void test_entry(global const float* restrict columns, uint stride, uint row, uint block, ulong entry,
-                       global uint* restrict bits, global uint* restrict counts
+inline void test_entry(global const float* columns, uint stride, uint row, uint block, ulong entry,
+                       global uint* bits, global uint* counts
 #if FILTERS
-                       , global const uint4* restrict filters, uint2* dropped
+                       , global const uint4* filters, uint2* dropped
 #endif
 ) {
     uint count = 0;

@@ -18,8 +18,8 @@ struct Quat {
 
 /// Body to world: first rotated, then moved. A point p of the body is at rotation * p + position.
 struct Pose {
-    Vec3 position;
-    Quat rotation;
+    Vec3 position{};
+    Quat rotation{};
 };
 
 static_assert(sizeof(Vec3) == 24 && sizeof(Quat) == 32, "bulk setters copy arrays of numbers over these");

@@ -24,10 +24,10 @@ struct BodyId {
 
 /// What add_body takes; every field but the shape has the default of the scene file format.
 struct Body {
-    ShapeId shape;
-    Pose pose;              ///< body to world
-    Vec3 velocity;          ///< units a second, world frame
-    Vec3 angular_velocity;  ///< radians a second about the world axes
+    ShapeId shape{};
+    Pose pose{};              ///< body to world
+    Vec3 velocity{};          ///< units a second, world frame
+    Vec3 angular_velocity{};  ///< radians a second about the world axes
     Motion motion = Motion::Dynamic;
     /// a and b may pair when (a.group & b.mask) && (b.group & a.mask).
     std::uint32_t group = 1;

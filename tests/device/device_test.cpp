@@ -73,7 +73,8 @@ TEST_CASE("a failing call names itself and its status", "[device]") {
         CHECK(std::string(error.what()).find("no_such_kernel") != std::string::npos);
     }
     detail::Kernel kernel = device.kernel("primitives/scan", "scan_runs");
-    CHECK_THROWS_AS(kernel.args(std::uint64_t{1}, std::uint64_t{2}), Error);
+    const detail::Buffer b = device.allocate(4, "a number");
+    CHECK_THROWS_AS(kernel.args(b, 1u, 1u, 1u, b, 1u), Error);  // one argument too many
 }
 
 TEST_CASE("the caller's own context and queue are checked", "[device]") {

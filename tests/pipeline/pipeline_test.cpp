@@ -111,7 +111,7 @@ TEST_CASE("steps of scenes with every shape class, planes and filters", "[device
     const std::uint64_t seed = 41;
     INFO("seed " << seed);
     test::Random random(seed);
-    for (const std::size_t n : {3, 200, 1500}) {
+    for (const std::size_t n : {3u, 200u, 1500u}) {
         Scene scene = random_scene(n, random);
         for (const std::string& name : broad_phase_names()) {
             INFO("n " << n << ", " << name);
