@@ -8,6 +8,6 @@ __kernel void compute_bounds(uint count, __global const BodyRecord* records, __g
                              __global const float* vertices, __global BoxRecord* boxes) {
     const size_t i = get_global_id(0);
     if (i >= count) return;
-    const BodyRecord body = records[i];
-    boxes[body.row] = clinch_bounds(&body, shapes, vertices);
+    __global const BodyRecord* body = &records[i];
+    clinch_bounds(body, shapes, vertices, &boxes[body->row]);
 }

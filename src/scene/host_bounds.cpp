@@ -19,7 +19,8 @@ std::size_t HostBounds::update(const Scene& scene) {
 #pragma omp parallel for schedule(static) if (count >= 4096)
     for (std::ptrdiff_t i = 0; i < count; ++i) {
         const BodyRecord& record = records_[static_cast<std::size_t>(i)];
-        const BoxRecord box = clinch_bounds(&record, shapes.records().data(), shapes.vertices().data());
+        BoxRecord box;
+        clinch_bounds(&record, shapes.records().data(), shapes.vertices().data(), &box);
         std::memcpy(&boxes_[record.row], &box, sizeof box);
     }
     tracker_.seen(scene);
