@@ -62,22 +62,25 @@ BoxFile read_boxes(const std::string& path) {
     NpyFile file(path, {NpyType::Float32, NpyType::Float64}, 6);
     BoxFile result;
     result.boxes.resize(file.rows());
-    const auto note = [&](std::size_t row, std::string why) {
-        if (!why.empty()) result.rejected.push_back({static_cast<std::uint32_t>(row), std::move(why)});
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+    // A row is judged before it is rounded: min = 1 + 1e-12 and max = 1 would become a box.
+    const auto reject = [&](std::size_t row, std::string why) {
+        result.boxes[row] = {{nan, nan, nan}, {nan, nan, nan}};
+        result.rejected.push_back({static_cast<std::uint32_t>(row), std::move(why)});
     };
     if (file.type() == NpyType::Float32) {
         file.read_rows(result.boxes.data());
-        for (std::size_t i = 0; i < result.boxes.size(); ++i) note(i, why_no_box(row_at<float>(&result.boxes[i])));
+        for (std::size_t i = 0; i < result.boxes.size(); ++i)
+            if (std::string why = why_no_box(row_at<float>(&result.boxes[i])); !why.empty()) reject(i, std::move(why));
         return result;
     }
     const std::vector<double> numbers = file.read<double>();
-    constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     for (std::size_t i = 0; i < result.boxes.size(); ++i) {
         const auto row = row_at<double>(numbers.data() + 6 * i);
-        std::string why = why_no_box(row);
-        // Rounded outward, min = 1 + 1e-12 and max = 1 would become a box.
-        result.boxes[i] = why.empty() ? round_outward(row) : Aabb{{nan, nan, nan}, {nan, nan, nan}};
-        note(i, std::move(why));
+        if (std::string why = why_no_box(row); !why.empty())
+            reject(i, std::move(why));
+        else
+            result.boxes[i] = round_outward(row);
     }
     return result;
 }

@@ -12,7 +12,7 @@ namespace clinch::io {
 
 struct BoxFile {
     std::vector<Aabb> boxes;          ///< one a row of the file, rejected ones included
-    std::vector<Rejection> rejected;  ///< meaningless rows with the reason, ascending; their boxes overlap nothing
+    std::vector<Rejection> rejected;  ///< meaningless rows with the reason, ascending; their boxes are NaN throughout
 };
 
 /// Reads an array of shape (n, 6): min x y z, max x y z of one box a row, float32 as it is or float64

@@ -24,7 +24,8 @@ const std::vector<std::string>& mesh_endings();
 bool is_mesh_path(const std::string& path);
 
 /// Reads every node that bears a mesh, in depth-first order; transforms are put together in float64,
-/// faces split into triangles. A file that is missing, empty or that cannot be read as what its ending
+/// faces split into triangles. Coordinates are those of the file, whichever axis it says is up; the
+/// unit of a .dae file is applied. A file that is missing, empty or that cannot be read as what its ending
 /// says is InputError. One without meshes gives no nodes.
 std::vector<MeshNode> read_mesh_nodes(const std::string& path);
 

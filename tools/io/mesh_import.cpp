@@ -105,7 +105,8 @@ std::string one_line(std::string text) {
 /// `triangulate` off: polygons stay as they are in the file. Returns null if a polygon could not be split.
 const aiScene* read(Assimp::Importer& importer, const std::string& path, bool triangulate) {
     const LogWatch log;
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);  // no meshes made up for bones
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // coordinates as in the file
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);           // no meshes made up for bones
     const aiScene* scene = importer.ReadFile(path, 0);
     if (scene == nullptr) throw InputError(one_line(importer.GetErrorString()));
     if (!log.loss().empty()) throw InputError(one_line(log.loss()));

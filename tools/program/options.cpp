@@ -40,27 +40,37 @@ void add_step_options(CLI::App& command, StepTexts& t) {
     command
         .add_option("--devices", t.devices,
                     "Devices to use: indices from 'clinch devices' (0,2), a type (cpu, gpu), or all")
+        ->type_name("LIST")
         ->capture_default_str();
     command.add_option("--algorithm", t.algorithm, "Broad phase: " + io::join(algorithm_names()))
+        ->type_name("NAME")
         ->capture_default_str();
     auto* precision =
-        command.add_option("--precision", t.precision, "Narrow phase, nothing to pairs: 0 (fastest) to 1 (most exact)")
+        command
+            .add_option("--precision", t.precision, "Narrow phase, no effect on pairs: 0 (fastest) to 1 (most exact)")
+            ->type_name("P")
             ->capture_default_str();
     command
         .add_option("--tolerance", t.tolerance,
-                    "Narrow phase, nothing to pairs: instead, an absolute error in scene units")
+                    "Narrow phase, no effect on pairs: instead, an absolute error in scene units")
+        ->type_name("T")
         ->excludes(precision);
     command
         .add_option("--contacts-per-pair", t.contacts_per_pair,
-                    "Narrow phase, nothing to pairs: points of a pair's manifold, 1 to 8")
+                    "Narrow phase, no effect on pairs: points of a pair's manifold, 1 to 8")
+        ->type_name("K")
         ->capture_default_str();
     command.add_option("--order", t.order, "sorted, or any: rows as they come, faster, may differ from run to run")
+        ->type_name("sorted|any")
         ->capture_default_str();
     command.add_option("--repeat", t.repeat, "Times the step is run, after a warming run, for timing")
+        ->type_name("K")
         ->capture_default_str();
-    command.add_option("--stats", t.stats, "Write statistics to this JSON file");
+    command.add_option("--stats", t.stats, "Write statistics to this JSON file")->type_name("FILE");
     command.add_flag("--strict", t.strict, "A rejected body is an error instead of a warning");
-    command.add_option("--seed", t.seed, "Seed of everything random (nothing is in pairs)")->capture_default_str();
+    command.add_option("--seed", t.seed, "Seed of everything random (nothing is in pairs)")
+        ->type_name("S")
+        ->capture_default_str();
 }
 
 StepOptions check_step_options(const StepTexts& t) {

@@ -182,8 +182,10 @@ Command add_pairs_command(CLI::App& app) {
     command
         ->add_option("INPUT", texts->input,
                      "Boxes (.npy), a scene (.json) or a mesh file (.glb .gltf .obj .stl .ply .dae .off)")
+        ->type_name("")
         ->required();
     command->add_option("-o,--output", texts->output, "File to write: .npy, .csv, or - for CSV on standard output")
+        ->type_name("FILE")
         ->required();
     add_step_options(*command, texts->step);
     return {command, [texts] { return run(*texts); }};

@@ -53,11 +53,12 @@ Command add_scene_command(CLI::App& app) {
     std::string kinds = "Kinds:";
     for (const scenes::BoxKind& kind : scenes::box_kinds()) kinds += std::string("\n  ") + kind.name + ": " + kind.what;
     command->footer(kinds);
-    command->add_option("KIND", texts->kind, "What to make: see below")->required();
+    command->add_option("KIND", texts->kind, "What to make: see below")->type_name("")->required();
     command->add_option("--count", texts->count, "Number of bodies, 0 to " + std::to_string(io::max_bodies))
+        ->type_name("N")
         ->required();
-    command->add_option("--seed", texts->seed, "Seed of everything random")->capture_default_str();
-    command->add_option("-o,--output", texts->output, "File to write: .npy")->required();
+    command->add_option("--seed", texts->seed, "Seed of everything random")->type_name("S")->capture_default_str();
+    command->add_option("-o,--output", texts->output, "File to write: .npy")->type_name("FILE")->required();
     return {command, [texts] { return run(*texts); }};
 }
 
