@@ -62,11 +62,11 @@ void BoxGenerator::place_clusters() {
     const double shift = 2.0 * deviation_ + 1.0;
     const double pitch = 12.0 * deviation_ + 2.0 * shift + 2.0;
     for (std::size_t i = 0; i < cluster_count; ++i) {
-        const int cell = cells[i];
+        const int column = cells[i] % 3, row = cells[i] / 3 % 3, layer = cells[i] / 9;
         Centre& c = clusters_[i];
-        c.x = pitch * (cell % 3) + random_.between(-shift, shift);
-        c.y = pitch * (cell / 3 % 3) + random_.between(-shift, shift);
-        c.z = pitch * (cell / 9) + random_.between(-shift, shift);
+        c.x = pitch * column + random_.between(-shift, shift);
+        c.y = pitch * row + random_.between(-shift, shift);
+        c.z = pitch * layer + random_.between(-shift, shift);
     }
 }
 

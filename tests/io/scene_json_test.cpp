@@ -129,6 +129,7 @@ TEST_CASE("meaningless bodies are rejected and the others stay", "[host]") {
         {"shape": {"type": "sphere", "radius": 1}}]})");
     const std::vector<Rejection> rejected = io::merge_rejections(loaded.scene.rejected(), loaded.reasons);
     std::vector<std::uint32_t> bodies;
+    bodies.reserve(rejected.size());
     for (const Rejection& r : rejected) bodies.push_back(r.body);
     CHECK(bodies == std::vector<std::uint32_t>{1, 2, 3, 4, 5, 6, 7});
     CHECK(rejected[1].why == "scale is 0 and must be > 0");

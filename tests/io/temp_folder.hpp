@@ -36,7 +36,7 @@ public:
 
     /// Writes a file and returns its path.
     std::string write(const std::string& name, std::string_view content) const {
-        const std::string file = *this / name;
+        std::string file = *this / name;
         std::ofstream out(file, std::ios::binary);
         out.write(content.data(), static_cast<std::streamsize>(content.size()));
         out.close();

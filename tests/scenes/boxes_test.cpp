@@ -153,10 +153,9 @@ TEST_CASE("clusters have four pairs a body and never mix", "[host]") {
 
 TEST_CASE("a generator gives the boxes one by one, and refuses an unknown kind", "[host]") {
     clinch::scenes::BoxGenerator generator("density", 50, 3);
-    for (const Aabb& box : make_boxes("density", 50, 3)) {
-        const Aabb next = generator.next();
-        REQUIRE(std::memcmp(&next, &box, sizeof box) == 0);
-    }
+    std::vector<Aabb> one_by_one(50);
+    for (Aabb& box : one_by_one) box = generator.next();
+    CHECK(hash(one_by_one) == hash(make_boxes("density", 50, 3)));
     for (const clinch::scenes::BoxKind& kind : clinch::scenes::box_kinds()) CHECK(make_boxes(kind.name, 0, 0).empty());
     CHECK_THROWS_AS(make_boxes("unifrom", 1, 0), clinch::Error);
     CHECK_THROWS_WITH(make_boxes("unifrom", 1, 0), Catch::Contains("unifrom") && Catch::Contains("uniform"));

@@ -1,6 +1,7 @@
 #include "tools/io/input_file.hpp"
 
 #include <cerrno>
+#include <cstdio>
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -19,7 +20,7 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
         throw InputError(path_ + ": is no regular file; only those are accepted");
     size_ = std::filesystem::file_size(path_, failure);
     if (failure) throw InputError(path_ + ": its size cannot be read: " + failure.message());
-    file_.reset(std::fopen(path_.c_str(), "rb"));
+    file_ = open_file(path_, "rb");
     if (!file_) throw InputError(path_ + ": cannot be opened for reading: " + std::generic_category().message(errno));
 }
 

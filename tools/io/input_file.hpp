@@ -3,9 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
-#include <memory>
 #include <string>
+
+#include "tools/io/file_pointer.hpp"
 
 namespace clinch::io {
 
@@ -22,14 +22,9 @@ public:
     void read(void* target, std::size_t bytes);
 
 private:
-    struct Close {
-        void operator()(std::FILE* file) const noexcept {
-            std::fclose(file);
-        }  // NOLINT(cppcoreguidelines-owning-memory)
-    };
     std::string path_;
     std::uint64_t size_ = 0;
-    std::unique_ptr<std::FILE, Close> file_;
+    FilePointer file_;
 };
 
 /// The whole content of a file. Errors as InputFile.

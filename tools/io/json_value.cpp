@@ -1,7 +1,6 @@
 #include "tools/io/json_value.hpp"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -14,78 +13,91 @@ namespace {
 
 using nlohmann::json;
 
-/// Watches a document being parsed for keys that stand twice in one object.
-class DuplicateWatch {
-public:
-    explicit DuplicateWatch(const std::string& file) : file_(file) {}
-
-    void operator()(json::parse_event_t event, const json& value) {
-        switch (event) {
-            case json::parse_event_t::object_start:
-            case json::parse_event_t::array_start:
-                next_element();
-                open_.push_back({event == json::parse_event_t::array_start, 0, {}, {}});
-                break;
-            case json::parse_event_t::object_end:
-            case json::parse_event_t::array_end:
-                open_.pop_back();
-                break;
-            case json::parse_event_t::key:
-                note_key(value.get_ref<const std::string&>());
-                break;
-            case json::parse_event_t::value:
-                next_element();
-                break;
-        }
-    }
-
-private:
-    struct Level {
-        bool array;
-        std::size_t elements;
-        std::string key;
-        std::set<std::string> keys;
-    };
-
-    void next_element() {
-        if (!open_.empty() && open_.back().array) ++open_.back().elements;
-    }
-    void note_key(const std::string& key) {
-        open_.back().key = key;
-        if (open_.back().keys.insert(key).second) return;
-        throw InputError(file_ + ": " + place() + " stands twice; once is accepted");
-    }
-    std::string place() const {
-        std::string path;
-        for (const Level& level : open_)
-            path +=
-                level.array ? "[" + std::to_string(level.elements - 1) + "]" : (path.empty() ? "" : ".") + level.key;
-        return path;
-    }
-
-    const std::string& file_;
-    std::vector<Level> open_;
-};
-
 /// A parser's message without the library's own tag in front.
 std::string plain(const std::string& message) {
     const std::size_t end = message.find("] ");
     return message.front() == '[' && end != std::string::npos ? message.substr(end + 2) : message;
 }
 
+/// Builds the document as it is parsed and refuses a key that stands twice in one object. (The library's
+/// own parser keeps the last such value in silence; its filter callback could see both, but searches the
+/// whole list around an object at the object's end.)
+class Builder final : public nlohmann::json_sax<json> {
+public:
+    Builder(const std::string& file, json& root) : file_(file), root_(root) {}
+
+    bool null() override { return add(nullptr); }
+    bool boolean(bool value) override { return add(value); }
+    bool number_integer(number_integer_t value) override { return add(value); }
+    bool number_unsigned(number_unsigned_t value) override { return add(value); }
+    bool number_float(number_float_t value, const string_t&) override { return add(value); }
+    bool string(string_t& value) override { return add(std::move(value)); }
+    bool binary(binary_t& value) override { return add(std::move(value)); }
+    bool start_object(std::size_t) override { return open(json::object()); }
+    bool start_array(std::size_t) override { return open(json::array()); }
+    bool end_object() override { return close(); }
+    bool end_array() override { return close(); }
+
+    bool key(string_t& name) override {
+        Level& level = open_.back();
+        const auto [entry, added] = level.value->get_ref<json::object_t&>().try_emplace(name);
+        level.entry = &*entry;
+        if (!added) throw InputError(file_ + ": " + place() + " stands twice; once is accepted");
+        return true;
+    }
+
+    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {
+        throw InputError(file_ + ": is no JSON document: " + plain(e.what()));
+    }
+
+private:
+    /// An object or list that is not yet closed. No list around it grows meanwhile: pointers stay.
+    struct Level {
+        json* value;
+        json::object_t::value_type* entry;  // of an object: the one being read
+    };
+
+    template <class Value>
+    json* put(Value&& value) {
+        if (open_.empty()) return &(root_ = std::forward<Value>(value));
+        Level& level = open_.back();
+        if (level.value->is_array()) return &level.value->emplace_back(std::forward<Value>(value));
+        return &(level.entry->second = std::forward<Value>(value));
+    }
+    template <class Value>
+    bool add(Value&& value) {
+        put(std::forward<Value>(value));
+        return true;
+    }
+    bool open(json&& value) {
+        open_.push_back({put(std::move(value)), nullptr});
+        return true;
+    }
+    bool close() {
+        open_.pop_back();
+        return true;
+    }
+    std::string place() const {
+        std::string path;
+        for (const Level& level : open_)
+            path += level.value->is_array() ? "[" + std::to_string(level.value->size() - 1) + "]"
+                                            : (path.empty() ? "" : ".") + level.entry->first;
+        return path;
+    }
+
+    const std::string& file_;
+    json& root_;
+    std::vector<Level> open_;
+};
+
 }  // namespace
 
 json read_json(const std::string& path) {
     const std::string text = read_text(path);
-    DuplicateWatch watch(path);
-    try {
-        return json::parse(text, [&watch](int, json::parse_event_t event, const json& value) {
-            watch(event, value);
-            return true;
-        });
-    } catch (const json::exception& e) {
-        throw InputError(path + ": is no JSON document: " + plain(e.what()));
-    }
+    json document;
+    Builder builder(path, document);
+    json::sax_parse(text, &builder);
+    return document;
 }
 
 std::string JsonValue::path() const {
@@ -112,12 +124,13 @@ std::string JsonValue::found() const {
 }
 
 void JsonValue::only_keys(std::initializer_list<const char*> keys) const {
-    std::vector<std::string> known(keys.begin(), keys.end());
-    const std::string accepted = join(known) + (known.size() > 1 ? " are accepted" : " is accepted");
-    if (!json_->is_object()) fail(found() + "; an object with keys among " + accepted);
-    for (const auto& entry : json_->items()) {
-        if (std::find(known.begin(), known.end(), entry.key()) != known.end()) continue;
-        JsonValue(entry.value(), *this, entry.key().c_str(), 0).fail("is no known key; " + accepted);
+    const auto accepted = [&] {
+        return join({keys.begin(), keys.end()}) + (keys.size() > 1 ? " are accepted" : " is accepted");
+    };
+    if (!json_->is_object()) fail(found() + "; an object with keys among " + accepted());
+    for (const auto& [key, value] : json_->get_ref<const json::object_t&>()) {
+        if (std::find(keys.begin(), keys.end(), key) != keys.end()) continue;
+        JsonValue(value, *this, key.c_str(), 0).fail("is no known key; " + accepted());
     }
 }
 

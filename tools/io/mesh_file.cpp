@@ -65,7 +65,7 @@ private:
         }
     };
     struct Same {
-        bool operator()(const Vec3& p, const Vec3& q) const noexcept { return std::memcmp(&p, &q, sizeof p) == 0; }
+        bool operator()(const Vec3& p, const Vec3& q) const noexcept { return p.x == q.x && p.y == q.y && p.z == q.z; }
     };
     Mesh& mesh_;
     std::unordered_map<Vec3, std::uint32_t, Hash, Same> numbers_;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdio>
 #include <filesystem>
 #include <random>
 #include <system_error>
@@ -11,10 +12,6 @@
 
 namespace clinch::io {
 namespace fs = std::filesystem;
-
-void OutputFile::Close::operator()(std::FILE* file) const noexcept {
-    if (file != stdout) std::fclose(file);  // NOLINT(cppcoreguidelines-owning-memory)
-}
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_) {
     if (path_ == "-") {
@@ -26,7 +23,7 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)), target_(path_
     if (status.type() == fs::file_type::directory) fail("is a folder", 0);
     if (fs::is_symlink(path_, failure)) target_ = fs::weakly_canonical(path_, failure).string();
     if (fs::exists(status) && status.type() != fs::file_type::regular) {
-        file_.reset(std::fopen(path_.c_str(), "wb"));
+        file_ = open_file(path_, "wb");
         if (!file_) fail("cannot be opened for writing", errno);
     } else {
         open_beside();
@@ -37,7 +34,7 @@ void OutputFile::open_beside() {
     // A rename would replace even a file that its owner has protected.
     std::error_code failure;
     if (fs::exists(target_, failure)) {
-        file_.reset(std::fopen(target_.c_str(), "r+b"));
+        file_ = open_file(target_, "r+b");
         if (!file_) fail("cannot be opened for writing", errno);
     }
     std::random_device random;
@@ -45,7 +42,7 @@ void OutputFile::open_beside() {
         std::array<char, 16> tag{};
         std::snprintf(tag.data(), tag.size(), ".%08x.part", static_cast<unsigned>(random()));
         const std::string name = target_ + tag.data();
-        file_.reset(std::fopen(name.c_str(), "wbx"));  // x: never over a file that is there
+        file_ = open_file(name, "wbx");  // x: never over a file that is there
         if (file_) {
             temporary_ = name;
             return;
@@ -72,11 +69,7 @@ void OutputFile::write(const void* data, std::size_t bytes) {
 }
 
 void OutputFile::finish() {
-    if (!file_) return;
-    if (std::fflush(file_.get()) != 0) fail("cannot be written", errno);
-    std::FILE* const file = file_.release();
-    if (file != stdout && std::fclose(file) != 0)
-        fail("cannot be written", errno);  // NOLINT(cppcoreguidelines-owning-memory)
+    if (file_ && !close_file(std::move(file_))) fail("cannot be written", errno);
 }
 
 void OutputFile::commit() {

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdio>
-#include <memory>
 #include <string>
+
+#include "tools/io/file_pointer.hpp"
 
 namespace clinch::io {
 
@@ -28,16 +28,13 @@ public:
     void commit();
 
 private:
-    struct Close {
-        void operator()(std::FILE* file) const noexcept;
-    };
     void open_beside();
     [[noreturn]] void fail(const std::string& what, int error) const;
 
     std::string path_;       // as the user named it
     std::string target_;     // links followed
     std::string temporary_;  // empty: written directly
-    std::unique_ptr<std::FILE, Close> file_;
+    FilePointer file_;
 };
 
 /// Checks that `path` could be written now, so that long work need not be done in vain: makes and
