@@ -79,7 +79,7 @@ struct Facet {
 class QhullRun {
 public:
     explicit QhullRun(const std::vector<Vec3>& points)
-        : points_(points), qhull_(std::make_unique<qhT>()), nowhere_(open_nowhere(), &std::fclose) {
+        : points_(points), qhull_(std::make_unique<qhT>()), nowhere_(open_nowhere()) {
         if (!nowhere_ || points.size() > INT_MAX) return;
         qh_zero(qhull_.get(), nowhere_.get());
         // Qhull takes coordinates it may change only with other options than these.
@@ -118,11 +118,12 @@ public:
     }
 
 private:
-    static std::FILE* open_nowhere() {
+    using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+    static File open_nowhere() {
 #ifdef _WIN32
-        return std::fopen("NUL", "w");
+        return {std::fopen("NUL", "w"), &std::fclose};
 #else
-        return std::fopen("/dev/null", "w");
+        return {std::fopen("/dev/null", "w"), &std::fclose};
 #endif
     }
     template <class F>
@@ -136,7 +137,7 @@ private:
 
     const std::vector<Vec3>& points_;
     std::unique_ptr<qhT> qhull_;
-    std::unique_ptr<std::FILE, int (*)(std::FILE*)> nowhere_;
+    File nowhere_;
     int status_ = -1;
     bool used_ = false;
 };

@@ -1,7 +1,6 @@
 #include "clinch/scene.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <string>
 #include <utility>
 
@@ -12,12 +11,6 @@ namespace clinch {
 namespace {
 
 constexpr std::size_t most_rows = 0xffffffffu;
-
-// Equal in every bit: a NaN equals itself, so that setting it again is no change.
-template <class T>
-bool same(const T& a, const T& b) {
-    return std::memcmp(&a, &b, sizeof(T)) == 0;
-}
 
 void require_shape(const Scene::Impl& scene, std::uint32_t shape) {
     if (shape >= scene.shapes.size())

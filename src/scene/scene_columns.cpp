@@ -5,6 +5,7 @@
 
 #include "clinch/error.hpp"
 #include "clinch/scene.hpp"
+#include "src/scene/same_bits.hpp"
 #include "src/scene/scene_impl.hpp"
 
 namespace clinch {
@@ -32,7 +33,7 @@ void change_rows(Scene::Impl& s, const std::vector<T>& column, std::size_t count
     bool raised = false;
     for (std::size_t i = 0; i < count; ++i) {
         const T value = get(i);
-        if (std::memcmp(&value, &column[first + i], sizeof(T)) == 0) continue;
+        if (detail::same_bits(value, column[first + i])) continue;
         if (!raised) ++s.version;
         raised = true;
         change(static_cast<std::uint32_t>(first + i), value);
@@ -40,11 +41,11 @@ void change_rows(Scene::Impl& s, const std::vector<T>& column, std::size_t count
 }
 
 // Rows of `width` numbers of type N into a column of T.
-template <class T, class N>
+template <std::size_t width, class T, class N>
 void set_numbers(Scene::Impl& s, std::vector<T>& column, const N* numbers, std::size_t count, std::size_t first,
                  unsigned faults, bool moves_box) {
     require_rows(s, numbers, count, first);
-    constexpr std::size_t width = sizeof(T) / sizeof(double);
+    static_assert(sizeof(T) == width * sizeof(double), "a row of the column is its numbers and nothing else");
     const auto get = [&](std::size_t i) {
         double row[width];
         for (std::size_t k = 0; k < width; ++k) row[k] = static_cast<double>(numbers[width * i + k]);
@@ -64,25 +65,25 @@ constexpr unsigned position_faults = detail::bad_position | detail::bad_reach;
 }  // namespace
 
 void Scene::set_positions(const double* xyz, std::size_t count, std::size_t first) {
-    set_numbers(*impl_, impl_->position, xyz, count, first, position_faults, true);
+    set_numbers<3>(*impl_, impl_->position, xyz, count, first, position_faults, true);
 }
 void Scene::set_positions(const float* xyz, std::size_t count, std::size_t first) {
-    set_numbers(*impl_, impl_->position, xyz, count, first, position_faults, true);
+    set_numbers<3>(*impl_, impl_->position, xyz, count, first, position_faults, true);
 }
 void Scene::set_rotations(const double* wxyz, std::size_t count, std::size_t first) {
-    set_numbers(*impl_, impl_->rotation, wxyz, count, first, detail::bad_rotation, true);
+    set_numbers<4>(*impl_, impl_->rotation, wxyz, count, first, detail::bad_rotation, true);
 }
 void Scene::set_rotations(const float* wxyz, std::size_t count, std::size_t first) {
-    set_numbers(*impl_, impl_->rotation, wxyz, count, first, detail::bad_rotation, true);
+    set_numbers<4>(*impl_, impl_->rotation, wxyz, count, first, detail::bad_rotation, true);
 }
 void Scene::set_velocities(const double* xyz, std::size_t count, std::size_t first) {
-    set_numbers(*impl_, impl_->velocity, xyz, count, first, detail::bad_velocity, false);
+    set_numbers<3>(*impl_, impl_->velocity, xyz, count, first, detail::bad_velocity, false);
 }
 void Scene::set_angular_velocities(const double* xyz, std::size_t count, std::size_t first) {
-    set_numbers(*impl_, impl_->angular_velocity, xyz, count, first, detail::bad_angular_velocity, false);
+    set_numbers<3>(*impl_, impl_->angular_velocity, xyz, count, first, detail::bad_angular_velocity, false);
 }
 void Scene::set_margins(const double* margin, std::size_t count, std::size_t first) {
-    set_numbers(*impl_, impl_->margin, margin, count, first, detail::bad_margin | detail::bad_reach, true);
+    set_numbers<1>(*impl_, impl_->margin, margin, count, first, detail::bad_margin | detail::bad_reach, true);
 }
 
 void Scene::set_shapes(const std::uint32_t* shape, std::size_t count, std::size_t first) {

@@ -2,9 +2,9 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
+#include "src/scene/same_bits.hpp"
 #include "tests/random.hpp"
 #include "tests/scene/bounds_oracle.hpp"
 
@@ -183,7 +183,7 @@ TEST_CASE("a sphere's box does not depend on its rotation", "[host]") {
     const Aabb still = box_of(Sphere{0.7}, body);
     body.pose.rotation = test::random_rotation(random);
     const Aabb spun = box_of(Sphere{0.7}, body);
-    CHECK(std::memcmp(&still, &spun, sizeof still) == 0);
+    CHECK(detail::same_bits(still, spun));
 }
 
 TEST_CASE("the square root of the bounds kernel is within 3u everywhere", "[host]") {
@@ -235,10 +235,10 @@ TEST_CASE("host bounds look again only at changed rows", "[host]") {
     CHECK(bounds.update(scene) == 3);
     CHECK(std::isnan(bounds.boxes()[4000].min[0]));
     CHECK(std::isnan(bounds.boxes()[8].max[2]));
-    CHECK(std::memcmp(&bounds.boxes()[9], &before[9], sizeof(Aabb)) == 0);
+    CHECK(detail::same_bits(bounds.boxes()[9], before[9]));
     scene.set_motion({8}, Motion::Dynamic);
     CHECK(bounds.update(scene) == 1);
-    CHECK(std::memcmp(&bounds.boxes()[8], &before[8], sizeof(Aabb)) == 0);
+    CHECK(detail::same_bits(bounds.boxes()[8], before[8]));
     const Scene copy = scene;
     CHECK(bounds.update(copy) == 5000);
     CHECK(bounds.update(scene) == 5000);

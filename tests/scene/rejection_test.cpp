@@ -213,6 +213,7 @@ TEST_CASE("many threads may read one scene", "[host]") {
     scene.add_bodies(2000, body);
     std::vector<std::size_t> sizes(4);
     std::vector<std::thread> threads;
+    threads.reserve(sizes.size());
     for (std::size_t& size : sizes) threads.emplace_back([&scene, &size] { size = scene.rejected().size(); });
     for (std::thread& thread : threads) thread.join();
     CHECK(sizes == std::vector<std::size_t>(4, 2000));
