@@ -7,7 +7,8 @@ function(clinch_warnings target)
         target_compile_options(${target} PRIVATE -Werror)
     endif()
     if(CLINCH_SANITIZE)
-        target_compile_options(${target} PRIVATE -fsanitize=${CLINCH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+        target_compile_options(${target} PRIVATE -fsanitize=${CLINCH_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
+            -Wno-maybe-uninitialized)  # which GCC reports falsely under sanitizers
         target_link_options(${target} PUBLIC -fsanitize=${CLINCH_SANITIZE})
     endif()
 endfunction()
