@@ -67,7 +67,7 @@ bool launch(const char* name) {
     cl_uint zeros[items] = {};
     cl_mem out = clCreateBuffer(context, CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, sizeof zeros, zeros, &status);
     if (!ok(status, "clCreateBuffer")) return false;
-    if (!ok(clSetKernelArg(kernel, 0, sizeof out, &out), "clSetKernelArg")) return false;
+    if (!ok(clSetKernelArg(kernel, 0, sizeof(cl_mem), &out), "clSetKernelArg")) return false;
     status = clEnqueueNDRangeKernel(queue, kernel, 1, nullptr, &items, &items, 0, nullptr, nullptr);
     return ok(status, "clEnqueueNDRangeKernel") && ok(clFinish(queue), "clFinish");
 }
