@@ -53,8 +53,8 @@ inline uintN test_row(global const float* columns, uint stride, uint row, uint c
 
 #if FILTERS
 // Filters come as (group, mask, can move, unused) a body. Clears the bits of pairs that do not
-// pass; adds up what was dropped: x by group and mask, y since neither can move.
-inline uint filter_word(uint hits, uint row, uint block, uint w, global const uint4* filters, uint2* dropped) {
+// pass; adds up what was dropped: [0] by group and mask, [1] since neither can move.
+inline uint filter_word(uint hits, uint row, uint block, uint w, global const uint4* filters, uint* dropped) {
     uint4 f = filters[row];
     uint kept = hits;
     for (uint left = hits; left != 0; left &= left - 1) {
@@ -62,8 +62,8 @@ inline uint filter_word(uint hits, uint row, uint block, uint w, global const ui
         uint4 g = filters[block * BLOCK + column_of(w, 31 - clz(bit))];
         bool allowed = (f.x & g.y) != 0 && (g.x & f.y) != 0;
         bool moves = (f.z | g.z) != 0;
-        if (!allowed) dropped->x += 1;
-        if (allowed && !moves) dropped->y += 1;
+        if (!allowed) dropped[0] += 1;
+        if (allowed && !moves) dropped[1] += 1;
         if (!allowed || !moves) kept &= ~bit;
     }
     return kept;
@@ -74,7 +74,7 @@ inline uint filter_word(uint hits, uint row, uint block, uint w, global const ui
 inline void test_entry(global const float* columns, uint stride, uint row, uint block, ulong entry,
                        global uint* bits, global uint* counts
 #if FILTERS
-                       , global const uint4* filters, uint2* dropped
+                       , global const uint4* filters, uint* dropped
 #endif
 ) {
     uint count = 0;
@@ -114,8 +114,10 @@ kernel void brute_tiles(global const float* restrict columns, uint stride, uint 
                         , global const uint4* restrict filters, volatile global uint* dropped_total, local uint* dropped_group
 #endif
 ) {
-    ulong tile = first_tile + get_group_id(0) / slices;
-    uint slice = get_group_id(0) % slices;
+    // Remainders by subtraction: oclgrind cannot follow what a compiler makes of / and % side by side.
+    uint group_tile = (uint)get_group_id(0) / slices;
+    uint slice = (uint)get_group_id(0) - group_tile * slices;
+    ulong tile = first_tile + group_tile;
     uint row_block, block;
     decode_pair(tile, (ulong)blocks + 1, &row_block, &block);
     block -= 1;  // the diagonal is in: column 0 of the pairs of blocks + 1 things has no tile
@@ -124,12 +126,12 @@ kernel void brute_tiles(global const float* restrict columns, uint stride, uint 
     uint row = max(row_first, row_block * BLOCK + slice * rows);
     uint end = min(row_end, row_block * BLOCK + (slice + 1) * rows);
 #if FILTERS
-    uint2 dropped = 0;
+    uint dropped[2] = {0, 0};
 #endif
     for (row += get_local_id(0); row < end; row += get_local_size(0)) {
         ulong entry = entry_of(row, block, row_first, blocks);
 #if FILTERS
-        test_entry(columns, stride, row, block, entry, bits, counts, filters, &dropped);
+        test_entry(columns, stride, row, block, entry, bits, counts, filters, dropped);
 #else
         test_entry(columns, stride, row, block, entry, bits, counts);
 #endif
@@ -141,8 +143,8 @@ kernel void brute_tiles(global const float* restrict columns, uint stride, uint 
     if (get_local_id(0) < 2) dropped_group[get_local_id(0)] = 0;
     if (get_local_size(0) == 1) dropped_group[1] = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
-    if (dropped.x != 0) atomic_add((volatile local uint*)dropped_group, dropped.x);
-    if (dropped.y != 0) atomic_add((volatile local uint*)dropped_group + 1, dropped.y);
+    if (dropped[0] != 0) atomic_add((volatile local uint*)dropped_group, dropped[0]);
+    if (dropped[1] != 0) atomic_add((volatile local uint*)dropped_group + 1, dropped[1]);
     barrier(CLK_LOCAL_MEM_FENCE);
     if (get_local_id(0) == 0 && dropped_group[0] != 0) atomic_add(dropped_total, dropped_group[0]);
     if (get_local_id(0) == 0 && dropped_group[1] != 0) atomic_add(dropped_total + 1, dropped_group[1]);
@@ -152,13 +154,14 @@ kernel void brute_tiles(global const float* restrict columns, uint stride, uint 
 // Entries [entry_first, entry_end); the pairs of the first go to pairs[0].
 kernel void brute_fill(global const uint* restrict bits, global const uint* restrict counts,
                        global const uint* restrict offsets, uint entry_first, uint entry_end, uint row_first, uint blocks,
-                       global uint2* restrict pairs) {
+                       global uint* restrict pairs) {
     uint entry = entry_first + get_global_id(0);
     if (entry >= entry_end || counts[entry] == 0) return;
     uint block_first = row_first / BLOCK;
     uint width = blocks - block_first;
-    uint row = row_first + entry / width;
-    uint block = block_first + entry % width;
+    uint batch_row = entry / width;
+    uint row = row_first + batch_row;
+    uint block = block_first + (entry - batch_row * width);
     ulong at = offsets[entry] - offsets[entry_first];
     global const uint* words = bits + (ulong)entry * WORDS;
     for (uint pass = 0; pass < BLOCK / PASS; ++pass) {
@@ -167,7 +170,10 @@ kernel void brute_fill(global const uint* restrict bits, global const uint* rest
             uint t = 31 - clz(steps & (0u - steps));
             for (uint l = 0; l < LANES; ++l) {
                 uint w = pass * LANES + l;
-                if ((words[w] >> t) & 1) pairs[at++] = (uint2)(row, block * BLOCK + column_of(w, t));
+                if (((words[w] >> t) & 1) == 0) continue;
+                pairs[2 * at] = row;
+                pairs[2 * at + 1] = block * BLOCK + column_of(w, t);
+                ++at;
             }
         }
     }

@@ -6,17 +6,16 @@
 //            -> out (6 columns), any_invalid (set to 1 if a box of the n is no box; the caller clears it)
 // One atomic a work-group at most. Defines: none
 
+#include "common/box.clh"
+
 kernel void columns(global const float* restrict boxes, ulong first, uint n, uint stride, global float* restrict out,
                     volatile global uint* any_invalid, local uint* group_invalid) {
     uint i = get_global_id(0);
     if (get_local_id(0) == 0) *group_invalid = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     if (i < stride) {
-        float box[6];
-        bool valid = i < n;
-        for (uint d = 0; d < 6; ++d) box[d] = valid ? boxes[(first + i) * 6 + d] : 0.0f;
-        for (uint d = 0; d < 3; ++d)
-            valid = valid && box[d] <= box[d + 3] && fabs(box[d]) < INFINITY && fabs(box[d + 3]) < INFINITY;
+        global const float* box = boxes + (first + i) * 6;
+        bool valid = i < n && is_box(box);
         for (uint d = 0; d < 6; ++d) out[d * (ulong)stride + i] = valid ? box[d] : NAN;
         if (!valid && i < n) atomic_or((volatile local uint*)group_invalid, 1u);
     }

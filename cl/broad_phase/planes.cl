@@ -9,8 +9,9 @@ kernel void planes_test(global const float* restrict boxes, uint n, global const
                         uint words_per_plane, global uint* restrict words) {
     uint item = get_global_id(0);
     if (item >= plane_count * words_per_plane) return;
-    float4 plane = planes[item / words_per_plane];
-    uint first = item % words_per_plane * 32;
+    uint p = item / words_per_plane;
+    float4 plane = planes[p];
+    uint first = (item - p * words_per_plane) * 32;
     uint end = min(n, first + 32);
     uint word = 0;
     for (uint i = first; i < end; ++i) {

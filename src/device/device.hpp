@@ -80,6 +80,11 @@ public:
         (set(index++, values), ...);
         return *this;
     }
+    /// Sets arguments from number `index` on; the others keep what they have.
+    template <class... A>
+    void args_from(cl_uint index, const A&... values) {
+        (set(index++, values), ...);
+    }
     cl_kernel handle() const noexcept { return kernel_; }
     const std::string& name() const noexcept { return name_; }
 
@@ -91,7 +96,7 @@ private:
     }
     void set_raw(cl_uint index, std::size_t size, const void* value);
     void set(cl_uint index, const Buffer& buffer) { set(index, buffer.handle()); }
-    void set(cl_uint index, cl_mem memory) { set_raw(index, sizeof memory, &memory); }
+    void set(cl_uint index, cl_mem memory) { set_raw(index, sizeof(cl_mem), &memory); }
     void set(cl_uint index, LocalMemory local) { set_raw(index, local.bytes, nullptr); }
     template <class T>
     void set(cl_uint index, const T& value) {

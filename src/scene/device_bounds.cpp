@@ -1,10 +1,27 @@
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <string>
 
+#include "clinch/error.hpp"
+#include "src/device/quirks.hpp"
 #include "src/scene/bounds.hpp"
 #include "src/scene/scene_impl.hpp"
 
 namespace clinch::detail {
+
+namespace {
+
+// One work-item goes through all vertices of a shape, with up to four turns of a loop for each.
+void check_vertex_count(std::uint32_t count, const DeviceInfo& info) {
+    const std::uint32_t most = most_loop_iterations(info) / 4;
+    if (count > most)
+        throw Error(ErrorCode::DeviceFailed,
+                    "a shape has " + std::to_string(count) + " outermost vertices, and the driver of '" + info.name +
+                        "' (quirk loops-end-early) gets through at most " + std::to_string(most));
+}
+
+}  // namespace
 
 std::size_t DeviceBounds::upload(const Scene& scene) {
     if (pending_ != 0) tracker_.forget();  // rows of the upload before were never computed
@@ -53,6 +70,7 @@ void DeviceBounds::send_shapes(const Scene& scene) {
         first = std::min(first, i);
         last = i + 1;
         if (record.vertex_count == 0) continue;
+        check_vertex_count(record.vertex_count, device_.info());
         first_vertex = std::min<std::size_t>(first_vertex, record.first_vertex);
         last_vertex = std::max<std::size_t>(last_vertex, std::size_t{record.first_vertex} + record.vertex_count);
     }
