@@ -58,7 +58,7 @@ TEST_CASE("few bodies give the pairs they should", "[program]") {
                 run_program({"pairs", box_file(folder, row.numbers), "-o", "-", "--algorithm", algorithm});
             CHECK(run.status == 0);
             CHECK(run.out == row.pairs);
-            CHECK(run.err.empty());
+            CHECK(run.complaints().empty());
         }
     const ProgramRun none = host_pairs(folder.write("e.json", R"({"bodies": []})"), "-");
     CHECK(none.status == 0);
@@ -108,7 +108,7 @@ TEST_CASE("scene files and mesh files go through the whole pipeline", "[program]
         const ProgramRun run = run_program({"pairs", scene, "-o", "-", "--algorithm", algorithm, "--repeat", "3"});
         CHECK(run.status == 0);
         CHECK(run.out == expected);
-        CHECK(run.err.empty());
+        CHECK(run.complaints().empty());
     }
     const std::string mesh = folder.write("m.obj",
                                           "o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no none\nv 9 9 9\nv 8 8 8\nl 4 5\n"

@@ -13,6 +13,8 @@ struct ProgramRun {
     int status = -1;  ///< exit status; 128 + signal if it was killed
     std::string out;
     std::string err;
+    /// `err` without notes, which a device with a known fault of its driver brings forth.
+    std::string complaints() const;
 };
 
 /// Runs the program named by the environment variable CLINCH_PROGRAM and waits for its end. `environment`

@@ -7,6 +7,7 @@
 
 #include <catch2/catch.hpp>
 #include <cstdlib>
+#include <sstream>
 #include <stdexcept>
 
 namespace clinch::test {
@@ -58,6 +59,14 @@ ProgramRun run(std::vector<std::string> arguments, const std::map<std::string, s
 }
 
 }  // namespace
+
+std::string ProgramRun::complaints() const {
+    std::string kept;
+    std::istringstream lines(err);
+    for (std::string line; std::getline(lines, line);)
+        if (line.rfind("clinch: note: ", 0) != 0) kept += line + '\n';
+    return kept;
+}
 
 ProgramRun run_program(const std::vector<std::string>& arguments,
                        const std::map<std::string, std::string>& environment) {
