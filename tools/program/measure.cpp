@@ -16,6 +16,7 @@ double median(std::vector<double> values) {
 StageTimes medians(const std::vector<StageTimes>& runs) {
     const auto of = [&](double StageTimes::*stage) {
         std::vector<double> values;
+        values.reserve(runs.size());
         for (const StageTimes& run : runs) values.push_back(run.*stage);
         return median(values);
     };
