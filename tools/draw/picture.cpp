@@ -4,18 +4,12 @@
 #include <cmath>
 #include <utility>
 
+#include <stb/stb_image_write.h>
+#include <stb/stb_truetype.h>
+
 #include "tools/io/error.hpp"
 #include "tools/io/input_file.hpp"
 #include "tools/io/output_file.hpp"
-
-// The implementations of these two headers, for this file alone.
-#define STBTT_STATIC
-#define STB_TRUETYPE_IMPLEMENTATION
-#include <stb/stb_truetype.h>
-#define STB_IMAGE_WRITE_STATIC
-#define STBI_WRITE_NO_STDIO
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#include <stb/stb_image_write.h>
 
 namespace clinch::draw {
 
@@ -88,9 +82,10 @@ int Picture::write(const Font& font, const std::string& text, int x, int y, floa
         mask.assign(static_cast<std::size_t>(w) * static_cast<std::size_t>(h), 0);
         if (!mask.empty())
             stbtt_MakeCodepointBitmapSubpixel(&info, mask.data(), w, h, w, scale, scale, shift, 0, text[i]);
-        for (std::size_t k = 0; k < mask.size(); ++k)
-            blend(static_cast<int>(pen) + x0 + static_cast<int>(k) % w, y + y0 + static_cast<int>(k) / w, colour,
-                  static_cast<float>(mask[k]) / 255.0f);
+        auto ink = mask.cbegin();
+        for (int row = y0; row < y1; ++row)
+            for (int column = x0; column < x1; ++column)
+                blend(static_cast<int>(pen) + column, y + row, colour, static_cast<float>(*ink++) / 255.0f);
         int advance = 0;
         stbtt_GetCodepointHMetrics(&info, text[i], &advance, nullptr);
         const int kern = i + 1 < text.size() ? stbtt_GetCodepointKernAdvance(&info, text[i], text[i + 1]) : 0;
