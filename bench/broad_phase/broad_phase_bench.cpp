@@ -64,12 +64,13 @@ void thesis(benchmark::State& state, const std::string& kind, std::size_t n) {
     detail::Kernel sum = device.kernel("bench/thesis_brute", "thesis_count");
     const std::uint64_t all = std::uint64_t{n} * (n - 1) / 2;
     const auto words = static_cast<std::uint32_t>(all / 32 + 1);
-    const detail::Buffer rows = device.allocate(n * sizeof(Aabb), "boxes"), bits = device.allocate(words * 4, "bits"),
+    const detail::Buffer rows = device.allocate(n * sizeof(Aabb), "boxes"),
+                         bits = device.allocate(std::size_t{words} * 4, "bits"),
                          total = device.allocate(4, "the count");
     std::uint32_t pairs = 0;
     const auto run = [&] {
         device.write(rows, boxes.data(), n * sizeof(Aabb));
-        device.clear(bits, words * 4);
+        device.clear(bits, std::size_t{words} * 4);
         device.clear(total, 4);
         device.launch_items(test.args(rows, static_cast<std::uint32_t>(n), bits), all);
         device.launch_items(sum.args(bits, words, words / 256 + 1, total), 256);

@@ -41,7 +41,7 @@ private:
 class Pipeline {
 public:
     /// `context` must outlive this object. Builds nothing yet. Errors as BroadPhase.
-    explicit Pipeline(Context& context, PipelineOptions options = {});
+    explicit Pipeline(Context& context, const PipelineOptions& options = {});
     ~Pipeline();
     Pipeline(Pipeline&& other) noexcept;
     Pipeline& operator=(Pipeline&& other) noexcept;

@@ -14,7 +14,7 @@
 namespace clinch {
 
 struct StepResult::Impl {
-    Impl(Context& context, PipelineOptions options)
+    Impl(Context& context, const PipelineOptions& options)
         : broad(context, options.broad_phase), measure(options.broad_phase.measure_stages), result(*this) {}
 
     BroadPhase broad;
@@ -158,7 +158,7 @@ const Report& StepResult::report() const noexcept {
     return impl_->report;
 }
 
-Pipeline::Pipeline(Context& context, PipelineOptions options)
+Pipeline::Pipeline(Context& context, const PipelineOptions& options)
     : impl_(std::make_unique<StepResult::Impl>(context, std::move(options))) {}
 Pipeline::~Pipeline() = default;
 Pipeline::Pipeline(Pipeline&& other) noexcept = default;

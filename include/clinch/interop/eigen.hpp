@@ -11,12 +11,20 @@
 
 namespace clinch {
 
-inline Eigen::Vector3d to_eigen(const Vec3& v) { return {v.x, v.y, v.z}; }
-inline Vec3 from_eigen(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+inline Eigen::Vector3d to_eigen(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
+inline Vec3 from_eigen(const Eigen::Vector3d& v) {
+    return {v.x(), v.y(), v.z()};
+}
 
 /// The rotation as given, not normalised.
-inline Eigen::Quaterniond to_eigen(const Quat& q) { return {q.w, q.x, q.y, q.z}; }
-inline Quat from_eigen(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+inline Eigen::Quaterniond to_eigen(const Quat& q) {
+    return {q.w, q.x, q.y, q.z};
+}
+inline Quat from_eigen(const Eigen::Quaterniond& q) {
+    return {q.w(), q.x(), q.y(), q.z()};
+}
 
 /// Body to world as a rigid transform; the rotation is normalised.
 inline Eigen::Isometry3d to_eigen(const Pose& pose) {
