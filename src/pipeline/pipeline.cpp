@@ -159,7 +159,7 @@ const Report& StepResult::report() const noexcept {
 }
 
 Pipeline::Pipeline(Context& context, const PipelineOptions& options)
-    : impl_(std::make_unique<StepResult::Impl>(context, std::move(options))) {}
+    : impl_(std::make_unique<StepResult::Impl>(context, options)) {}
 Pipeline::~Pipeline() = default;
 Pipeline::Pipeline(Pipeline&& other) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&& other) noexcept = default;
