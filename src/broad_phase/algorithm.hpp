@@ -35,6 +35,7 @@ public:
 struct AlgorithmRow {
     const char* name;
     bool needs_device;
+    bool long_loops;  ///< does not run on a device with the quirk loops-end-early
     /// `device` is null for a row that needs none.
     std::unique_ptr<BroadPhaseAlgorithm> (*make)(Device* device, const BroadPhaseOptions& options);
 };
@@ -43,8 +44,10 @@ struct AlgorithmRow {
 View<const AlgorithmRow> registry();
 /// The row of `name`; an unknown name is InvalidArgument that lists the known ones.
 const AlgorithmRow& algorithm_named(const std::string& name);
-/// The choice of "auto" for `count` boxes.
-const AlgorithmRow& choose_algorithm(std::uint64_t count, bool has_device);
+/// The choice of "auto" for `count` boxes; `device` is the one to work on, null for the host alone.
+const AlgorithmRow& choose_algorithm(std::uint64_t count, const DeviceInfo* device);
+/// Whether the algorithm gives right results on the device.
+bool runs_on(const AlgorithmRow& row, const DeviceInfo& device);
 
 /// Throws LimitExceeded when `pairs` is more than the options allow; `pairs` is the true count.
 void check_limit(std::uint64_t pairs, const BroadPhaseOptions& options);

@@ -58,7 +58,7 @@ BroadPhase::Impl::Impl(Context& c, BroadPhaseOptions o) : context(c.impl()), opt
 
 const detail::AlgorithmRow& BroadPhase::Impl::choose(std::uint64_t count) const {
     if (options.algorithm != "auto") return detail::algorithm_named(options.algorithm);
-    return detail::choose_algorithm(count, !context.infos.empty());
+    return detail::choose_algorithm(count, context.infos.empty() ? nullptr : &context.infos[context.primary()]);
 }
 
 detail::Device& BroadPhase::Impl::device() const {
@@ -70,6 +70,10 @@ View<const Pair> BroadPhase::Impl::find(const detail::AlgorithmRow& row, detail:
     const detail::Stopwatch total;
     pairs.clear();
     report = Report{};
+    if (row.needs_device && !detail::runs_on(row, context.infos[context.primary()]))
+        throw Error(ErrorCode::DeviceFailed, std::string("the algorithm '") + row.name + "' cannot run on '" +
+                                                 context.infos[context.primary()].name +
+                                                 "', whose driver has the quirk loops-end-early; brute can");
     auto& algorithm = made[&row];
     if (!algorithm) algorithm = row.make(row.needs_device ? &device() : nullptr, options);
     if (row.needs_device) boxes.on(device());

@@ -1,6 +1,7 @@
 // The pairs of one call, readable on the host.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -30,6 +31,19 @@ public:
         clear();
         mapping_ = std::move(mapping);
         size_ = count;
+    }
+    /// Sorts a list of the host that was put together from sorted runs, which end at `ends`.
+    void merge_runs(std::vector<std::size_t> ends) {
+        const auto at = [&](std::size_t i) { return host_.begin() + static_cast<std::ptrdiff_t>(i); };
+        while (ends.size() > 1) {  // neighbours in pairs
+            std::vector<std::size_t> merged;
+            for (std::size_t r = 0; r < ends.size(); r += 2) {
+                const std::size_t first = r == 0 ? 0 : ends[r - 1];
+                if (r + 1 < ends.size()) std::inplace_merge(at(first), at(ends[r]), at(ends[r + 1]));
+                merged.push_back(ends[std::min(r + 1, ends.size() - 1)]);
+            }
+            ends = std::move(merged);
+        }
     }
     View<const Pair> view() const noexcept {
         const Pair* mapped = mapping_.as<Pair>();

@@ -1,23 +1,28 @@
-#include <algorithm>
+#include <limits>
 
 #include "clinch/error.hpp"
 #include "src/broad_phase/algorithm.hpp"
+#include "src/device/quirks.hpp"
 
 namespace clinch::detail {
 
 std::unique_ptr<BroadPhaseAlgorithm> make_brute(Device* device, const BroadPhaseOptions& options);
+std::unique_ptr<BroadPhaseAlgorithm> make_grid(Device* device, const BroadPhaseOptions& options);
 std::unique_ptr<BroadPhaseAlgorithm> make_host_brute(Device* device, const BroadPhaseOptions& options);
 
 namespace {
 
 const AlgorithmRow rows[] = {
-    {"brute", true, make_brute},
-    {"host-brute", false, make_host_brute},
+    {"brute", true, false, make_brute},
+    {"grid", true, true, make_grid},
+    {"host-brute", false, false, make_host_brute},
 };
 
 // Up to here the host is done before a device has started: launching and waiting cost about as much as
 // this many boxes against each other.
 constexpr std::uint64_t host_boxes = 500;
+// Up to here testing all pairs costs less than sorting boxes into cells.
+constexpr std::uint64_t brute_boxes = 2000;
 
 }  // namespace
 
@@ -34,8 +39,14 @@ const AlgorithmRow& algorithm_named(const std::string& name) {
     throw Error(ErrorCode::InvalidArgument, "there is no broad-phase algorithm '" + name + "'; accepted are " + known);
 }
 
-const AlgorithmRow& choose_algorithm(std::uint64_t count, bool has_device) {
-    return algorithm_named(has_device && count > host_boxes ? "brute" : "host-brute");
+bool runs_on(const AlgorithmRow& row, const DeviceInfo& device) {
+    return !row.long_loops || most_loop_iterations(device) == std::numeric_limits<std::uint32_t>::max();
+}
+
+const AlgorithmRow& choose_algorithm(std::uint64_t count, const DeviceInfo* device) {
+    if (device == nullptr || count <= host_boxes) return algorithm_named("host-brute");
+    const AlgorithmRow& grid = algorithm_named("grid");
+    return count > brute_boxes && runs_on(grid, *device) ? grid : algorithm_named("brute");
 }
 
 void check_limit(std::uint64_t pairs, const BroadPhaseOptions& options) {

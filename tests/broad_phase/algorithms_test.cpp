@@ -27,7 +27,7 @@ void with_each(const std::vector<std::uint32_t>& lanes, std::size_t scratch,
                const std::function<void(BroadPhase&)>& check) {
     for (std::uint32_t device = 0; device < list_devices().size(); ++device)
         for (const std::uint32_t lane_count : lanes)
-            for (const std::string& name : broad_phase_names()) {
+            for (const std::string& name : test::names_for(list_devices()[device])) {
                 Context context = test::with_lanes(device, lane_count);
                 BroadPhaseOptions options;
                 options.algorithm = name;
@@ -216,8 +216,7 @@ TEST_CASE("boxes that touch are pairs, boxes one ulp apart are not", "[device][s
     }
     const std::vector<Pair> expected = test::pairs_by_hand(boxes);
     CHECK(std::count_if(expected.begin(), expected.end(), [](const Pair& p) { return p.a == 0; }) == 3);
-    with_each({1}, default_scratch,
-              [&](BroadPhase& broad_phase) { check_scene(broad_phase, boxes, {}, expected); });
+    with_each({1}, default_scratch, [&](BroadPhase& broad_phase) { check_scene(broad_phase, boxes, {}, expected); });
 }
 
 TEST_CASE("boxes that are no boxes are named with the reason", "[device]") {
@@ -257,7 +256,7 @@ TEST_CASE("what filters drop is counted", "[device]") {
 TEST_CASE("a limit on pairs is an error that names the true count", "[device]") {
     const std::vector<Aabb> boxes(600, Aabb{{0, 0, 0}, {1, 1, 1}});
     for (std::uint32_t device = 0; device < list_devices().size(); ++device)
-        for (const std::string& name : broad_phase_names()) {
+        for (const std::string& name : test::names_for(list_devices()[device])) {
             INFO(name);
             Context context = test::with_lanes(device, 8);
             BroadPhaseOptions options;

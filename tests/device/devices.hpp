@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "clinch/broad_phase.hpp"
 #include "clinch/context.hpp"
+#include "src/broad_phase/algorithm.hpp"
 #include "src/device/context_impl.hpp"
 #include "src/device/device.hpp"
 
@@ -26,6 +28,14 @@ inline Context with_lanes(std::uint32_t i, std::uint32_t lanes) {
     Context context(options);
     context.impl().infos[0].lanes = lanes;
     return context;
+}
+
+/// Names of the broad-phase algorithms that run on a device: all but those that a quirk of it rules out.
+inline std::vector<std::string> names_for(const DeviceInfo& device) {
+    std::vector<std::string> names;
+    for (const std::string& name : broad_phase_names())
+        if (detail::runs_on(detail::algorithm_named(name), device)) names.push_back(name);
+    return names;
 }
 
 }  // namespace clinch::test

@@ -15,7 +15,11 @@ if ! command -v oclgrind >/dev/null 2>&1; then
     exit 98
 fi
 rm -f "$log"
-oclgrind --data-races --uninitialized --log "$log" "$@"
+# What to check for. With --uninitialized oclgrind 21.10 breaks down in kernels that work on vectors, or reports lanes
+# that are set: (uint2)(a, b) stored whole is enough. Those kernels are checked without it.
+checks=${CLINCH_OCLGRIND_CHECKS:---data-races --uninitialized}
+# shellcheck disable=SC2086  # the checks are words of their own
+oclgrind $checks --log "$log" "$@"
 status=$?
 if [ -s "$log" ]; then
     echo "run.sh: oclgrind reports:" >&2

@@ -113,7 +113,7 @@ TEST_CASE("steps of scenes with every shape class, planes and filters", "[device
     test::Random random(seed);
     for (const std::size_t n : {3u, 200u, 1500u}) {
         Scene scene = random_scene(n, random);
-        for (const std::string& name : broad_phase_names()) {
+        for (const std::string& name : test::names_for(list_devices()[0])) {
             INFO("n " << n << ", " << name);
             Context context;
             Pipeline pipeline(context, with_algorithm(name));
@@ -154,7 +154,7 @@ TEST_CASE("only what changed is computed again", "[device]") {
     test::Random random(43);
     Scene scene = random_scene(1000, random);
     const std::size_t rows = scene.row_count();
-    for (const std::string& name : broad_phase_names()) {
+    for (const std::string& name : test::names_for(list_devices()[0])) {
         INFO(name);
         Context context;
         Pipeline pipeline(context, with_algorithm(name));
@@ -230,7 +230,7 @@ TEST_CASE("planes: axis-aligned ones are exact, far ones keep what they touch", 
 
 TEST_CASE("an empty scene, and a scene emptied, give no pairs", "[device][small]") {
     Context context;
-    for (const std::string& name : broad_phase_names()) {
+    for (const std::string& name : test::names_for(list_devices()[0])) {
         INFO(name);
         Pipeline pipeline(context, with_algorithm(name));
         Scene scene;
@@ -252,7 +252,7 @@ TEST_CASE("after an error the next step starts afresh", "[device]") {
     const ShapeId box = scene.add_shape(Box{});
     for (int i = 0; i < 100; ++i) scene.add_body({box});
     Context context;
-    for (const std::string& name : broad_phase_names()) {
+    for (const std::string& name : test::names_for(list_devices()[0])) {
         PipelineOptions options = with_algorithm(name);
         options.broad_phase.max_pairs = 1000;
         Pipeline pipeline(context, options);

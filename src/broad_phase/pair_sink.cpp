@@ -1,0 +1,211 @@
+#include "src/broad_phase/pair_sink.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "src/device/stopwatch.hpp"
+
+namespace clinch::detail {
+namespace {
+
+// As the struct of the same name in pair_sink.clh.
+struct SinkTail {
+    std::uint32_t chunk, used;
+    std::uint64_t filtered, unmoving, tests;
+};
+static_assert(sizeof(SinkTail) == 32, "kernels write this layout");
+
+constexpr std::uint32_t no_chunk = 0xffffffffu;
+
+// Work-items of a launch: they take tasks one by one, so a few a core are enough.
+std::size_t workers(const Device& device) {
+    const DeviceInfo& info = device.info();
+    return info.lanes > 1 ? info.compute_units * std::size_t{2} : info.compute_units * std::size_t{256};
+}
+
+struct Move {
+    std::uint64_t from, to, count;
+};
+
+// Runs of pairs that bring those behind `total` into the gaps before it.
+std::vector<Move> moves_into_gaps(std::vector<PartialChunk> tails, std::uint64_t chunks, std::uint64_t chunk_size) {
+    std::sort(tails.begin(), tails.end(),
+              [](const PartialChunk& a, const PartialChunk& b) { return a.chunk < b.chunk; });
+    std::uint64_t total = chunks * chunk_size;
+    for (const PartialChunk& tail : tails) total -= chunk_size - tail.used;
+
+    std::vector<Move> moves;
+    // Pairs behind `total`, chunk by chunk: those of a tail, or a whole chunk.
+    std::uint64_t chunk = total / chunk_size, at = total;
+    auto source = std::lower_bound(tails.begin(), tails.end(), chunk,
+                                   [](const PartialChunk& tail, std::uint64_t c) { return tail.chunk < c; });
+    const auto source_end = [&] {
+        const bool is_tail = source != tails.end() && source->chunk == chunk;
+        return chunk * chunk_size + (is_tail ? source->used : chunk_size);
+    };
+    for (const PartialChunk& tail : tails) {
+        std::uint64_t to = std::uint64_t{tail.chunk} * chunk_size + tail.used;
+        const std::uint64_t gap_end = std::min<std::uint64_t>(total, (std::uint64_t{tail.chunk} + 1) * chunk_size);
+        while (to < gap_end) {
+            while (at >= source_end()) {  // on to the next chunk
+                if (source != tails.end() && source->chunk == chunk) ++source;
+                at = ++chunk * chunk_size;
+            }
+            const std::uint64_t count = std::min(gap_end - to, source_end() - at);
+            moves.push_back({at, to, count});
+            at += count;
+            to += count;
+        }
+    }
+    return moves;
+}
+
+}  // namespace
+
+PairSink::PairSink(Device& device, const BroadPhaseOptions& options)
+    : device_(device), options_(options), filters_(device), sort_(device) {}
+
+std::uint64_t PairSink::most_pairs() const {
+    return std::min<std::uint64_t>(device_.info().max_allocation / sizeof(Pair), 0xf0000000u);
+}
+
+// Room for `pairs` pairs that `launches` kernels put out.
+void PairSink::plan(std::uint64_t pairs, std::size_t launches) {
+    const std::uint64_t all_workers = workers(device_) * launches;
+    chunk_size_ = 16;
+    while (chunk_size_ < 4096 && std::uint64_t{chunk_size_} * all_workers * 16 < pairs) chunk_size_ *= 2;
+    const std::uint64_t chunks =
+        std::min(pairs / chunk_size_ + all_workers + 1, std::max<std::uint64_t>(most_pairs() / chunk_size_, 1));
+    capacity_ = static_cast<std::uint32_t>(chunks);
+    device_.reserve(pairs_, chunks * chunk_size_ * sizeof(Pair), "pairs");
+    capacity_ =
+        static_cast<std::uint32_t>(std::min<std::uint64_t>(pairs_.bytes() / sizeof(Pair) / chunk_size_, 0xfffffff0u));
+}
+
+// Enqueues all parts.
+void PairSink::launch(const std::vector<Part>& parts, std::size_t groups, const cl_mem filters) {
+    const std::size_t group = device_.group_size();
+    for (std::uint32_t p = 0; p < parts.size(); ++p) {
+        const SinkLaunch& launch = *parts[p].launch;
+        const auto first_tail = static_cast<std::uint32_t>(p * groups * group);
+        launch.kernel->args_from(launch.own_parameters, pairs_, state_, tails_, first_tail, p, chunk_size_, capacity_,
+                                 parts[p].end, filters);
+        device_.launch(*launch.kernel, groups, group);
+    }
+}
+
+// What the work-items of the last launches left behind.
+void PairSink::read_tails(std::size_t count, Outcome& outcome) {
+    std::vector<SinkTail> tails(count);
+    partial_chunks_.clear();
+    device_.read(tails_, tails.data(), tails.size() * sizeof tails[0]);
+    for (const SinkTail& tail : tails) {
+        outcome.counts.pairs_filtered += tail.filtered;
+        outcome.counts.static_pairs += tail.unmoving;
+        outcome.counts.box_tests += tail.tests;
+        if (tail.chunk != no_chunk) partial_chunks_.push_back({tail.chunk, tail.used});
+    }
+}
+
+PairSink::Outcome PairSink::run(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies) {
+    const std::size_t group = device_.group_size();
+    const std::size_t groups = (workers(device_) + group - 1) / group;
+    const std::size_t tails = parts.size() * groups * group;
+    std::vector<std::uint32_t> state{0};
+    for (const Part& part : parts) state.push_back(part.first);
+    device_.reserve(state_, state.size() * sizeof state[0], "the state of a sink");
+    device_.reserve(tails_, tails * sizeof(SinkTail), "the tails of a sink");
+    device_.write(state_, state.data(), state.size() * sizeof state[0]);
+    const cl_mem filter_rows = filters.any() ? filters_.on_device(filters, bodies).handle() : state_.handle();
+
+    launch(parts, groups, filter_rows);
+    Outcome outcome;
+    read_tails(tails, outcome);
+    device_.read(state_, state.data(), sizeof state[0]);
+    outcome.chunks = state[0];
+    outcome.pairs = outcome.chunks * chunk_size_;
+    outcome.fits = outcome.chunks <= capacity_;
+    for (const PartialChunk& part : partial_chunks_) outcome.pairs -= chunk_size_ - part.used;
+    return outcome;
+}
+
+void PairSink::close_gaps(const Outcome& outcome) {
+    const std::vector<Move> moves = moves_into_gaps(partial_chunks_, outcome.chunks, chunk_size_);
+    if (moves.empty()) return;
+    if (!move_kernel_) move_kernel_ = device_.kernel("broad_phase/pair_sink", "sink_move");
+    device_.reserve(moves_, moves.size() * sizeof moves[0], "the moves of a sink");
+    device_.write(moves_, moves.data(), moves.size() * sizeof moves[0]);
+    device_.launch_items(move_kernel_.args(pairs_, moves_, static_cast<std::uint32_t>(moves.size())), moves.size());
+}
+
+// Puts the pairs of an outcome behind those in `pairs`; `alone`: they are the only ones, and may stay on the device.
+void PairSink::deliver(const Outcome& outcome, std::uint32_t bodies, bool alone, PairList& pairs, FindCounts& counts) {
+    close_gaps(outcome);
+    if (options_.order == Order::Sorted) sort_.sort(pairs_, outcome.pairs, bodies);
+    const Stopwatch watch;
+    Mapping mapping = device_.map(pairs_, outcome.pairs * sizeof(Pair));
+    if (alone)
+        pairs.adopt(std::move(mapping), outcome.pairs);
+    else
+        pairs.append(mapping.as<Pair>(), outcome.pairs);
+    counts.download_ms += watch.ms();
+}
+
+void PairSink::add(const Outcome& outcome, FindCounts& counts) {
+    counts.pairs_filtered += outcome.counts.pairs_filtered;
+    counts.static_pairs += outcome.counts.static_pairs;
+    counts.box_tests += outcome.counts.box_tests;
+}
+
+void PairSink::collect(const std::vector<SinkLaunch>& launches, const FilterInput& filters, std::uint32_t bodies,
+                       PairList& pairs, FindCounts& counts) {
+    std::vector<Part> parts;
+    for (const SinkLaunch& launch : launches)
+        if (launch.tasks > 0) parts.push_back({&launch, 0, launch.tasks});
+    if (parts.empty()) return;
+    plan(std::max<std::uint64_t>(expected_ + expected_ / 8, bodies), parts.size());
+    Outcome outcome = run(parts, filters, bodies);
+    expected_ = outcome.pairs;
+    check_limit(outcome.pairs, options_);
+    if (!outcome.fits) {
+        plan(outcome.pairs + outcome.pairs / 64, parts.size());
+        if (outcome.pairs + std::uint64_t{chunk_size_} * workers(device_) * parts.size() <= most_pairs())
+            outcome = run(parts, filters, bodies);
+    }
+    if (!outcome.fits) {
+        std::uint64_t total = 0;
+        std::vector<std::size_t> ends;
+        for (const Part& part : parts) collect_in_parts({part}, filters, bodies, pairs, counts, total, ends);
+        if (options_.order == Order::Sorted) pairs.merge_runs(ends);
+        return;
+    }
+    add(outcome, counts);
+    if (outcome.pairs == 0) return;
+    deliver(outcome, bodies, true, pairs, counts);
+}
+
+// Halves the tasks until their pairs fit, and takes each piece to the host.
+void PairSink::collect_in_parts(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies,
+                                PairList& pairs, FindCounts& counts, std::uint64_t& total,
+                                std::vector<std::size_t>& sorted_ends) {
+    const Part part = parts[0];
+    const Outcome outcome = run(parts, filters, bodies);
+    if (!outcome.fits) {
+        if (part.end - part.first == 1)
+            throw Error(ErrorCode::OutOfMemory, std::to_string(outcome.pairs) +
+                                                    " pairs of one task do not fit in one buffer of '" +
+                                                    device_.info().name + "'");
+        const std::uint32_t middle = part.first + (part.end - part.first) / 2;
+        collect_in_parts({{part.launch, part.first, middle}}, filters, bodies, pairs, counts, total, sorted_ends);
+        collect_in_parts({{part.launch, middle, part.end}}, filters, bodies, pairs, counts, total, sorted_ends);
+        return;
+    }
+    add(outcome, counts);
+    total += outcome.pairs;
+    if (outcome.pairs == 0) return;
+    deliver(outcome, bodies, false, pairs, counts);
+    sorted_ends.push_back(total);
+}
+
+}  // namespace clinch::detail

@@ -1,0 +1,78 @@
+// Runs kernels that put out pairs in any order (cl/broad_phase/pair_sink.clh) and makes one list of them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "clinch/broad_phase.hpp"
+#include "src/broad_phase/algorithm.hpp"
+#include "src/broad_phase/inputs.hpp"
+#include "src/broad_phase/pair_list.hpp"
+#include "src/device/device.hpp"
+#include "src/primitives/pair_sort.hpp"
+
+namespace clinch::detail {
+
+/// One kernel whose last parameters are SINK_PARAMS, its own already set.
+struct SinkLaunch {
+    Kernel* kernel;
+    cl_uint own_parameters;  ///< how many stand before SINK_PARAMS
+    std::uint32_t tasks;
+};
+
+/// The last chunk of a work-item: `used` pairs of it are there.
+struct PartialChunk {
+    std::uint32_t chunk, used;
+};
+
+/// Output of any size: the room is guessed from the last call; when it was short, the exact count is known
+/// and the kernels run once more; when one buffer cannot hold it, the tasks are cut into parts whose
+/// pairs are joined on the host. Never a lost pair.
+class PairSink {
+public:
+    PairSink(Device& device, const BroadPhaseOptions& options);
+
+    /// The -D options that a kernel with these filters is built with.
+    static const char* defines(const FilterInput& filters) { return filters.any() ? "-DFILTERS=1" : ""; }
+
+    /// Runs all launches in order and puts their pairs, of `bodies` bodies, into `pairs`: sorted if the
+    /// options ask for it. Adds to `counts`. Waits.
+    void collect(const std::vector<SinkLaunch>& launches, const FilterInput& filters, std::uint32_t bodies,
+                 PairList& pairs, FindCounts& counts);
+
+private:
+    // What running launches gave: pairs there are, and how many chunks they took.
+    struct Outcome {
+        std::uint64_t pairs = 0;
+        std::uint64_t chunks = 0;
+        FindCounts counts;
+        bool fits = false;
+    };
+    struct Part {
+        const SinkLaunch* launch;
+        std::uint32_t first, end;
+    };
+    void plan(std::uint64_t pairs, std::size_t launches);
+    Outcome run(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies);
+    void launch(const std::vector<Part>& parts, std::size_t groups, cl_mem filters);
+    void read_tails(std::size_t count, Outcome& outcome);
+    void close_gaps(const Outcome& outcome);
+    void deliver(const Outcome& outcome, std::uint32_t bodies, bool alone, PairList& pairs, FindCounts& counts);
+    void collect_in_parts(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies,
+                          PairList& pairs, FindCounts& counts, std::uint64_t& total,
+                          std::vector<std::size_t>& sorted_ends);
+    static void add(const Outcome& outcome, FindCounts& counts);
+    std::uint64_t most_pairs() const;
+
+    Device& device_;
+    const BroadPhaseOptions& options_;
+    FilterMirror filters_;
+    PairSort sort_;
+    Kernel move_kernel_;
+    Buffer pairs_, state_, tails_, moves_;
+    std::vector<PartialChunk> partial_chunks_;
+    std::uint64_t expected_ = 0;  // pairs of the last call
+    std::uint32_t chunk_size_ = 0, capacity_ = 0;
+};
+
+}  // namespace clinch::detail
