@@ -14,13 +14,15 @@ BoxStatistics StatisticsGatherer::gather(BoxInput& boxes) {
     if (!kernel_) kernel_ = device_.kernel("broad_phase/box_statistics", "box_statistics");
     const DeviceInfo& info = device_.info();
     const std::uint32_t n = boxes.count();
-    const std::uint32_t runs = std::clamp(n / 1024, 1u, info.compute_units * (info.lanes > 1 ? 4u : 16u));
+    const std::uint32_t run_count = std::clamp(n / 1024, 1u, info.compute_units * (info.lanes > 1 ? 4u : 16u));
+    const std::size_t runs = run_count;
     device_.reserve(corners_, runs * 6 * sizeof(float), "box statistics");
     device_.reserve(counts_, runs * classes * sizeof(std::uint32_t), "box statistics");
     device_.reserve(widest_, runs * classes * sizeof(float), "box statistics");
     const std::size_t group = device_.group_size();
-    device_.launch(kernel_.args(boxes.on(device_), boxes.first(), n, n / runs + 1, runs, corners_, counts_, widest_),
-                   (runs + group - 1) / group, group);
+    device_.launch(
+        kernel_.args(boxes.on(device_), boxes.first(), n, n / run_count + 1, run_count, corners_, counts_, widest_),
+        (runs + group - 1) / group, group);
 
     std::vector<float> corners(runs * 6), widest(runs * classes);
     std::vector<std::uint32_t> counts(runs * classes);

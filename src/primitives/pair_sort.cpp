@@ -27,7 +27,7 @@ void PairSort::sort(Buffer& pairs, std::uint64_t count, std::uint32_t bodies) {
     const std::uint32_t bits = std::max(1u, bits_of(bodies - 1));
     const std::uint32_t shift = bits > 8 ? bits - 8 : 0;
     const auto runs = static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(count / 1024, 1, info.compute_units * (info.lanes > 1 ? 2u : 64u)));
+        std::clamp<std::uint64_t>(count / 1024, 1, std::uint64_t{info.compute_units} * (info.lanes > 1 ? 2 : 64)));
     const std::uint64_t per_run = (count + runs - 1) / runs;
     const std::size_t table = std::size_t{buckets} * runs * sizeof(std::uint32_t);
     device_.reserve(other_, pairs.bytes(), "the sort of pairs");

@@ -37,7 +37,7 @@ public:
     LogWatch() {
         auto listener = std::make_unique<Listener>(*this);
         Assimp::DefaultLogger::set(listener.release());  // which owns it
-    }  // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks)
+    }                                                    // NOLINT(clang-analyzer-cplusplus.NewDeleteLeaks)
     ~LogWatch() { Assimp::DefaultLogger::set(nullptr); }
     LogWatch(const LogWatch&) = delete;
     LogWatch& operator=(const LogWatch&) = delete;
