@@ -331,3 +331,22 @@ TEST_CASE("200,000 boxes in bounded memory", "[device][.large]") {
     CHECK(broad_phase.report().box_tests == 200000ull * 199999 / 2);
     CHECK(broad_phase.report().peak_device_bytes < 90u << 20);
 }
+
+TEST_CASE("more pairs than one buffer of the device holds", "[device]") {
+    std::vector<Aabb> boxes(700, Aabb{{0, 0, 0}, {1, 1, 1}});
+    for (const Aabb& box : scenes::make_boxes("uniform", 500, 6)) boxes.push_back(box);
+    const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+    REQUIRE(expected.size() * sizeof(Pair) > 1900000);
+    for (std::uint32_t device = 0; device < list_devices().size(); ++device)
+        for (const std::string& name : test::names_for(list_devices()[device])) {
+            INFO(name);
+            Context context = test::with_lanes(device, 8);
+            context.impl().infos[0].max_allocation = 700000;
+            BroadPhaseOptions options;
+            options.algorithm = name;
+            options.scratch_bytes = 500000;
+            BroadPhase broad_phase(context, options);
+            check_scene(broad_phase, boxes, {}, expected);
+            check_scene(broad_phase, boxes, {}, expected);
+        }
+}
