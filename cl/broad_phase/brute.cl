@@ -12,7 +12,7 @@
 //   brute_tiles  columns -> bits (BLOCK / 32 words an entry), counts (hits an entry)
 //                one work-group a slice of a tile, any size; entries of rows [row_first, row_end) only
 //   brute_fill   bits, counts, offsets (their scan) -> pairs, rows and columns ascending
-//                one work-item an entry
+//                one work-item FILL_ENTRIES entries
 // Defines: LANES; FILTERS (0): 1 applies group, mask and motion before a pair is counted
 #include "common/lanes.clh"
 #include "common/pair_index.clh"
@@ -22,6 +22,7 @@
 #endif
 #define BLOCK 512
 #define WORDS (BLOCK / 32)
+#define FILL_ENTRIES 16
 #define PASS (32 * LANES)  // columns that one word a lane covers
 
 // Where a batch of rows stands: entry (row, block) is number (row - row_first) * width + block - block_first.
@@ -151,19 +152,8 @@ kernel void brute_tiles(global const float* restrict columns, uint stride, uint 
 #endif
 }
 
-// Entries [entry_first, entry_end); the pairs of the first go to pairs[0].
-kernel void brute_fill(global const uint* restrict bits, global const uint* restrict counts,
-                       global const uint* restrict offsets, uint entry_first, uint entry_end, uint row_first, uint blocks,
-                       global uint* restrict pairs) {
-    uint entry = entry_first + get_global_id(0);
-    if (entry >= entry_end || counts[entry] == 0) return;
-    uint block_first = row_first / BLOCK;
-    uint width = blocks - block_first;
-    uint batch_row = entry / width;
-    uint row = row_first + batch_row;
-    uint block = block_first + (entry - batch_row * width);
-    ulong at = offsets[entry] - offsets[entry_first];
-    global const uint* words = bits + (ulong)entry * WORDS;
+// Writes the pairs of one entry from pairs[at] on.
+inline void fill_entry(global const uint* words, uint row, uint first_column, ulong at, global uint* pairs) {
     for (uint pass = 0; pass < BLOCK / PASS; ++pass) {
         uint steps = any_bit(load_lanes(pass, words));
         for (; steps != 0; steps &= steps - 1) {
@@ -172,9 +162,24 @@ kernel void brute_fill(global const uint* restrict bits, global const uint* rest
                 uint w = pass * LANES + l;
                 if (((words[w] >> t) & 1) == 0) continue;
                 pairs[2 * at] = row;
-                pairs[2 * at + 1] = block * BLOCK + column_of(w, t);
+                pairs[2 * at + 1] = first_column + column_of(w, t);
                 ++at;
             }
         }
+    }
+}
+
+// Entries [entry_first, entry_end), FILL_ENTRIES a work-item since most are empty; the pairs of the first go to pairs[0].
+kernel void brute_fill(global const uint* restrict bits, global const uint* restrict counts,
+                       global const uint* restrict offsets, uint entry_first, uint entry_end, uint row_first, uint blocks,
+                       global uint* restrict pairs) {
+    uint block_first = row_first / BLOCK;
+    uint width = blocks - block_first;
+    uint entry = entry_first + get_global_id(0) * FILL_ENTRIES;
+    for (uint last = min(entry_end, entry + FILL_ENTRIES); entry < last; ++entry) {
+        if (counts[entry] == 0) continue;
+        uint batch_row = entry / width;
+        uint column = (block_first + (entry - batch_row * width)) * BLOCK;
+        fill_entry(bits + (ulong)entry * WORDS, row_first + batch_row, column, offsets[entry] - offsets[entry_first], pairs);
     }
 }

@@ -12,6 +12,7 @@ namespace clinch::detail {
 namespace {
 
 constexpr std::uint32_t block = 512;                                         // BLOCK of the kernel
+constexpr std::uint32_t fill_entries_an_item = 16;                           // FILL_ENTRIES of the kernel
 constexpr std::size_t bits_bytes = block / 8;                                // of one entry: a row against a block
 constexpr std::size_t entry_bytes = bits_bytes + 2 * sizeof(std::uint32_t);  // bits, count, offset
 
@@ -97,7 +98,7 @@ void Brute::fill_entries(const Batch& batch, std::uint32_t first, std::uint32_t 
     if (!fill_kernel_) fill_kernel_ = device_.kernel("broad_phase/brute", "brute_fill");
     device_.reserve(pairs_, std::size_t{count} * sizeof(Pair), "pairs");
     fill_kernel_.args(bits_, counts_, offsets_, first, end, batch.first, batch.blocks, pairs_);
-    device_.launch_items(fill_kernel_, end - first);
+    device_.launch_items(fill_kernel_, (end - first + fill_entries_an_item - 1) / fill_entries_an_item);
 }
 
 void Brute::fill(const Batch& batch, std::uint32_t found, bool only_one, PairList& pairs, FindCounts& counts) {
