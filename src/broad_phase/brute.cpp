@@ -71,11 +71,12 @@ void Brute::test(const Batch& batch, const FilterInput& filters, std::uint32_t n
     device_.reserve(counts_, std::size_t{batch.entries()} * sizeof(std::uint32_t), "the counts of brute");
     device_.reserve(offsets_, std::size_t{batch.entries()} * sizeof(std::uint32_t), "the offsets of brute");
 
-    // Enough work-groups to keep every unit busy to the end, with rows for every item of a group.
+    // Enough work-groups to keep every unit busy to the end (PoCL hands out several at a time), with rows for every
+    // item of a group.
     const std::size_t group = device_.group_size();
     std::uint32_t slices = 1;
     while (slices < block / 8 && block / slices > group &&
-           batch.tiles() * slices < 32 * std::uint64_t{device_.info().compute_units})
+           batch.tiles() * slices < 256 * std::uint64_t{device_.info().compute_units})
         slices *= 2;
 
     Kernel& kernel = filters.any() ? filtered_tiles_kernel_ : tiles_kernel_;
