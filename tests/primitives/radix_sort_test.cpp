@@ -25,12 +25,13 @@ void check_sort(detail::Device& device, detail::RadixSort& sort, std::uint32_t n
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return keys[a] < keys[b]; });
 
-    detail::Buffer k = device.allocate(n * sizeof(Key), "keys"), p = device.allocate(n * 4, "payload");
+    detail::Buffer k = device.allocate(n * sizeof(Key), "keys"),
+                   p = device.allocate(n * sizeof(std::uint32_t), "payload");
     device.write(k, keys.data(), n * sizeof(Key));
-    if (!number) device.write(p, payload.data(), n * 4);
+    if (!number) device.write(p, payload.data(), n * sizeof(std::uint32_t));
     sort.sort(k, p, n, bits, number);
     device.read(k, sorted.data(), n * sizeof(Key));
-    device.read(p, moved.data(), n * 4);
+    device.read(p, moved.data(), n * sizeof(std::uint32_t));
     std::size_t wrong = 0;
     for (std::uint32_t i = 0; i < n; ++i)
         wrong += sorted[i] == keys[order[i]] && moved[i] == payload[order[i]] ? 0U : 1U;
