@@ -1,6 +1,7 @@
 #include "src/broad_phase/pair_sink.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -70,9 +71,22 @@ std::uint64_t PairSink::most_pairs() const {
     return std::min<std::uint64_t>(device_.info().max_allocation / sizeof(Pair), 0xf0000000u);
 }
 
-// Room for `pairs` pairs that `launches` kernels put out.
-void PairSink::plan(std::uint64_t pairs, std::size_t launches) {
-    const std::uint64_t all_workers = workers(device_) * launches;
+// Work-groups that work on a part.
+std::size_t PairSink::groups_of(const Part& part) const {
+    const std::size_t group = device_.group_size();
+    const std::uint32_t most = part.launch->most_tasks;
+    const std::size_t items = most == 0 ? workers(device_) : (part.end - part.first - 1) / most + std::size_t{1};
+    return (items + group - 1) / group;
+}
+
+std::size_t PairSink::workers_of(const std::vector<Part>& parts) const {
+    std::size_t items = 0;
+    for (const Part& part : parts) items += groups_of(part) * device_.group_size();
+    return items;
+}
+
+// Room for `pairs` pairs that `all_workers` work-items put out.
+void PairSink::plan(std::uint64_t pairs, std::uint64_t all_workers) {
     chunk_size_ = 16;
     while (chunk_size_ < 4096 && std::uint64_t{chunk_size_} * all_workers * 16 < pairs) chunk_size_ *= 2;
     const std::uint64_t chunks =
@@ -84,14 +98,18 @@ void PairSink::plan(std::uint64_t pairs, std::size_t launches) {
 }
 
 // Enqueues all parts.
-void PairSink::launch(const std::vector<Part>& parts, std::size_t groups, const cl_mem filters) {
+void PairSink::launch(const std::vector<Part>& parts, const cl_mem filters) {
     const std::size_t group = device_.group_size();
+    std::size_t first_tail = 0;
     for (std::uint32_t p = 0; p < parts.size(); ++p) {
         const SinkLaunch& launch = *parts[p].launch;
-        const auto first_tail = static_cast<std::uint32_t>(p * groups * group);
-        launch.kernel->args_from(launch.own_parameters, pairs_, state_, tails_, first_tail, p, chunk_size_, capacity_,
-                                 parts[p].end, filters);
+        const std::size_t groups = groups_of(parts[p]);
+        launch.kernel->args_from(launch.own_parameters, pairs_, state_, tails_, static_cast<std::uint32_t>(first_tail),
+                                 p, chunk_size_, capacity_, parts[p].end,
+                                 launch.most_tasks == 0 ? std::numeric_limits<std::uint32_t>::max() : launch.most_tasks,
+                                 filters);
         device_.launch(*launch.kernel, groups, group);
+        first_tail += groups * group;
     }
 }
 
@@ -109,9 +127,7 @@ void PairSink::read_tails(std::size_t count, Outcome& outcome) {
 }
 
 PairSink::Outcome PairSink::run(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies) {
-    const std::size_t group = device_.group_size();
-    const std::size_t groups = (workers(device_) + group - 1) / group;
-    const std::size_t tails = parts.size() * groups * group;
+    const std::size_t tails = workers_of(parts);
     std::vector<std::uint32_t> state{0};
     for (const Part& part : parts) state.push_back(part.first);
     device_.reserve(state_, state.size() * sizeof state[0], "the state of a sink");
@@ -119,7 +135,7 @@ PairSink::Outcome PairSink::run(const std::vector<Part>& parts, const FilterInpu
     device_.write(state_, state.data(), state.size() * sizeof state[0]);
     const cl_mem filter_rows = filters.any() ? filters_.on_device(filters, bodies).handle() : state_.handle();
 
-    launch(parts, groups, filter_rows);
+    launch(parts, filter_rows);
     Outcome outcome;
     read_tails(tails, outcome);
     device_.read(state_, state.data(), sizeof state[0]);
@@ -164,14 +180,14 @@ void PairSink::collect(const std::vector<SinkLaunch>& launches, const FilterInpu
     for (const SinkLaunch& launch : launches)
         if (launch.tasks > 0) parts.push_back({&launch, 0, launch.tasks});
     if (parts.empty()) return;
-    plan(std::max<std::uint64_t>(expected_ + expected_ / 8, bodies), parts.size());
+    const std::uint64_t all_workers = workers_of(parts);
+    plan(std::max<std::uint64_t>(expected_ + expected_ / 8, bodies), all_workers);
     Outcome outcome = run(parts, filters, bodies);
     expected_ = outcome.pairs;
     check_limit(outcome.pairs, options_);
     if (!outcome.fits) {
-        plan(outcome.pairs + outcome.pairs / 64, parts.size());
-        if (outcome.pairs + std::uint64_t{chunk_size_} * workers(device_) * parts.size() <= most_pairs())
-            outcome = run(parts, filters, bodies);
+        plan(outcome.pairs + outcome.pairs / 64, all_workers);
+        if (outcome.pairs + chunk_size_ * all_workers <= most_pairs()) outcome = run(parts, filters, bodies);
     }
     if (!outcome.fits) {
         std::uint64_t total = 0;

@@ -18,6 +18,9 @@ struct SinkLaunch {
     Kernel* kernel;
     cl_uint own_parameters;  ///< how many stand before SINK_PARAMS
     std::uint32_t tasks;
+    /// A work-item takes at most so many, and there are work-items enough for all: for devices where loops end
+    /// early. 0: it takes tasks until none is left.
+    std::uint32_t most_tasks = 0;
 };
 
 /// The last chunk of a work-item: `used` pairs of it are there.
@@ -52,9 +55,11 @@ private:
         const SinkLaunch* launch;
         std::uint32_t first, end;
     };
-    void plan(std::uint64_t pairs, std::size_t launches);
+    std::size_t groups_of(const Part& part) const;
+    std::size_t workers_of(const std::vector<Part>& parts) const;
+    void plan(std::uint64_t pairs, std::uint64_t all_workers);
     Outcome run(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies);
-    void launch(const std::vector<Part>& parts, std::size_t groups, cl_mem filters);
+    void launch(const std::vector<Part>& parts, cl_mem filters);
     void read_tails(std::size_t count, Outcome& outcome);
     void close_gaps(const Outcome& outcome);
     void deliver(const Outcome& outcome, std::uint32_t bodies, bool alone, PairList& pairs, FindCounts& counts);
