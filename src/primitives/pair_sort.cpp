@@ -1,7 +1,12 @@
 #include "src/primitives/pair_sort.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
+#include <vector>
+
+#include "clinch/aabb.hpp"
+#include "src/device/quirks.hpp"
 
 namespace clinch::detail {
 namespace {
@@ -16,8 +21,20 @@ std::uint32_t bits_of(std::uint32_t value) {
 
 }  // namespace
 
+// Where loops end early: a bucket may hold more pairs than a loop has turns.
+void PairSort::sort_on_host(const Buffer& pairs, std::uint64_t count) {
+    std::vector<Pair> sorted(count);
+    device_.read(pairs, sorted.data(), count * sizeof(Pair));
+    std::sort(sorted.begin(), sorted.end());
+    device_.write(pairs, sorted.data(), count * sizeof(Pair));
+}
+
 void PairSort::sort(Buffer& pairs, std::uint64_t count, std::uint32_t bodies) {
     if (count < 2) return;
+    if (most_loop_iterations(device_.info()) != std::numeric_limits<std::uint32_t>::max()) {
+        sort_on_host(pairs, count);
+        return;
+    }
     if (!count_kernel_) {
         count_kernel_ = device_.kernel("primitives/pair_sort", "pair_count");
         scatter_kernel_ = device_.kernel("primitives/pair_sort", "pair_scatter");

@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "src/device/quirks.hpp"
+
 namespace clinch::detail {
 namespace {
 
@@ -15,8 +17,9 @@ struct Shape {
 };
 
 Shape shape_for(const DeviceInfo& info, std::uint32_t n) {
-    if (info.lanes > 1) return {8, std::clamp(n / 2048, 1u, 2 * info.compute_units)};
-    return {4, std::clamp(n / 256, 1u, 256 * info.compute_units)};
+    const std::uint32_t least = n / (most_loop_iterations(info) / 4) + 1;  // no run may be longer than a loop
+    if (info.lanes > 1) return {8, std::max(least, std::clamp(n / 2048, 1u, 2 * info.compute_units))};
+    return {4, std::max(least, std::clamp(n / 256, 1u, 256 * info.compute_units))};
 }
 
 }  // namespace

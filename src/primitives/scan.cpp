@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "src/device/quirks.hpp"
+
 namespace clinch::detail {
 namespace {
 
@@ -10,7 +12,7 @@ constexpr std::uint32_t shortest_run = 256;
 // Runs: a few for each unit of a CPU, which reads a long run best; enough work-items for a GPU.
 std::uint32_t run_length(const DeviceInfo& info, std::uint32_t n) {
     const std::uint32_t runs = std::max(1u, info.compute_units * (info.lanes > 1 ? 4u : 256u));
-    return std::max(shortest_run, n / runs + 1);
+    return std::clamp(n / runs + 1, shortest_run, most_loop_iterations(info) / 4);
 }
 
 }  // namespace
