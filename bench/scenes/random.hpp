@@ -3,6 +3,9 @@
 // from operations that IEEE 754 rounds exactly.
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <random>
 
@@ -24,6 +27,32 @@ public:
         double sum = -6.0;
         for (int i = 0; i < 12; ++i) sum += unit();
         return sum;
+    }
+    /// A unit vector of `Size` numbers, any direction as likely as any other: a point of the unit ball (by rejection,
+    /// Marsaglia 1972), stretched. The square root is the one function of <cmath> whose last bit is fixed.
+    template <std::size_t Size>
+    std::array<double, Size> unit_vector() {
+        for (;;) {
+            std::array<double, Size> v{};
+            double square = 0.0;
+            for (double& x : v) {
+                x = between(-1.0, 1.0);
+                square += x * x;
+            }
+            if (square > 1.0 || square < 1e-6) continue;
+            const double length = std::sqrt(square);
+            for (double& x : v) x /= length;
+            return v;
+        }
+    }
+    std::array<double, 3> direction() { return unit_vector<3>(); }
+    /// A rotation, any as likely as any other: the rows of the matrix of a random unit quaternion.
+    std::array<std::array<double, 3>, 3> rotation() {
+        const std::array<double, 4> q = unit_vector<4>();
+        const double w = q[0], x = q[1], y = q[2], z = q[3];
+        return {{{1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)},
+                 {2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)},
+                 {2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)}}};
     }
 
 private:

@@ -78,11 +78,12 @@ double expected_mixed_pairs(const std::vector<Aabb>& boxes, double edge) {
 }  // namespace
 
 TEST_CASE("box scenes are the same bytes on every machine", "[host]") {
-    const std::map<std::string, std::uint64_t> known{{"uniform", 0xdfc1bb0120102587u},
-                                                     {"cubes", 0xff96d681ab32810du},
-                                                     {"density", 0xb63ffea7329cfd3bu},
-                                                     {"mixed", 0x864a698e196efc54u},
-                                                     {"clusters", 0xac2d6b57ac57a82du}};
+    const std::map<std::string, std::uint64_t> known{
+        {"uniform", 0xdfc1bb0120102587u},      {"cubes", 0xff96d681ab32810du},    {"density", 0xb63ffea7329cfd3bu},
+        {"mixed", 0x864a698e196efc54u},        {"clusters", 0xac2d6b57ac57a82du}, {"surface", 0xcda27e36c1ba4894u},
+        {"plane", 0xaa1298dbf418f60cu},        {"line", 0x170d0f401266bb47u},     {"identical", 0xfb2eff01747760c3u},
+        {"grid-touch", 0x5c6c6311ffe3b513u},   {"far", 0x9f07495b76627489u},      {"far6", 0x47e30e7dc0ff5504u},
+        {"sparse-motion", 0xb63ffea7329cfd3bu}};
     REQUIRE(clinch::scenes::box_kinds().size() == known.size());
     for (const clinch::scenes::BoxKind& kind : clinch::scenes::box_kinds()) {
         INFO(kind.name);
