@@ -9,6 +9,7 @@ namespace clinch::detail {
 std::unique_ptr<BroadPhaseAlgorithm> make_brute(Device* device, const BroadPhaseOptions& options);
 std::unique_ptr<BroadPhaseAlgorithm> make_grid(Device* device, const BroadPhaseOptions& options);
 std::unique_ptr<BroadPhaseAlgorithm> make_host_brute(Device* device, const BroadPhaseOptions& options);
+std::unique_ptr<BroadPhaseAlgorithm> make_sweep(Device* device, const BroadPhaseOptions& options);
 
 namespace {
 
@@ -16,6 +17,7 @@ const AlgorithmRow rows[] = {
     {"brute", true, false, make_brute},
     {"grid", true, true, make_grid},
     {"host-brute", false, false, make_host_brute},
+    {"sweep", true, false, make_sweep},
 };
 
 // Up to here the host is done before a device has started: launching and waiting cost about as much as
