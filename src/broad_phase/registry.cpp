@@ -7,6 +7,7 @@
 namespace clinch::detail {
 
 std::unique_ptr<BroadPhaseAlgorithm> make_brute(Device* device, const BroadPhaseOptions& options);
+std::unique_ptr<BroadPhaseAlgorithm> make_bvh(Device* device, const BroadPhaseOptions& options);
 std::unique_ptr<BroadPhaseAlgorithm> make_grid(Device* device, const BroadPhaseOptions& options);
 std::unique_ptr<BroadPhaseAlgorithm> make_host_brute(Device* device, const BroadPhaseOptions& options);
 std::unique_ptr<BroadPhaseAlgorithm> make_sweep(Device* device, const BroadPhaseOptions& options);
@@ -15,6 +16,7 @@ namespace {
 
 const AlgorithmRow rows[] = {
     {"brute", true, false, make_brute},
+    {"bvh", true, false, make_bvh},
     {"grid", true, true, make_grid},
     {"host-brute", false, false, make_host_brute},
     {"sweep", true, false, make_sweep},

@@ -1,0 +1,199 @@
+#include "src/broad_phase/bvh_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace clinch::detail {
+
+// As the struct of the same name in bvh.cl.
+struct BvhFrame {
+    float origin[3];
+    float scale;
+    float most_cells;
+    float size_limit[3];
+    std::uint32_t class_shift, most_class;
+    float measure;
+};
+static_assert(sizeof(BvhFrame) == 44, "kernels read this layout");
+
+struct BvhLevels {
+    std::uint32_t top;
+    std::uint32_t first[12];
+    std::uint32_t blocks;
+};
+static_assert(sizeof(BvhLevels) == 56, "kernels read this layout");
+
+namespace {
+
+struct BvhMeasure {
+    float size;
+    std::uint32_t invalid;
+};
+static_assert(sizeof(BvhMeasure) == 8, "kernels write this layout");
+
+// A refitted tree is given up when the sum of the sizes of its nodes, which its search goes along with, has grown so
+// much, or the box tests of the search have.
+constexpr double most_growth = 1.5;
+constexpr double most_test_growth = 1.25;
+
+unsigned bits_of(std::uint64_t value) {
+    unsigned bits = 0;
+    for (; value != 0; value >>= 1) ++bits;
+    return bits;
+}
+
+// Widest box of the narrower half.
+float median_width(const BoxStatistics& stats) {
+    std::uint32_t seen = 0;
+    for (const WidthClass& width : stats.widths)
+        if ((seen += width.count) >= stats.boxes - stats.boxes / 2) return width.widest;
+    return 0.0f;
+}
+
+// Bits an axis that the Morton code needs: cells as small as the boxes and as the room that each box has.
+unsigned axis_bits(const BoxStatistics& stats, const double* extent, double widest, float median) {
+    const double room = std::cbrt(extent[0] * extent[1] * extent[2] / stats.boxes);
+    double cell = median > 0.0f ? static_cast<double>(median) : widest;
+    if (room > 0.0 && room < cell) cell = room;
+    const double cells = cell > 0.0 ? widest / cell : 0.0;
+    return cells < 2097152.0 ? std::max(1u, bits_of(static_cast<std::uint64_t>(cells))) : 21u;
+}
+
+}  // namespace
+
+BvhTree::BvhTree(Device& device)
+    : device_(device),
+      width_(std::max(device.info().lanes, 8u)),
+      statistics_(device),
+      sort32_(device),
+      sort64_(device, RadixSort::Key::Bits64) {}
+
+// Work-items that share `nodes`: a few for each core, or enough to fill a GPU.
+std::uint32_t BvhTree::items_for(std::uint32_t nodes) const {
+    const DeviceInfo& info = device_.info();
+    return std::clamp(nodes, 1u, info.compute_units * (info.lanes > 1 ? 16u : 512u));
+}
+
+// Numbers the blocks of all levels and makes room for them.
+void BvhTree::shape(std::uint32_t n) {
+    BvhLevels levels{};
+    blocks_ = (n - 1) / width_ + 1;
+    levels.blocks = blocks_;
+    level_first_.assign(1, 0);
+    std::uint32_t blocks = blocks_, first = 0;
+    do {  // at least one level above the boxes
+        first += blocks;
+        level_first_.push_back(first);
+        levels.first[++levels.top] = first;
+        blocks = (blocks - 1) / width_ + 1;
+    } while (blocks > 1);
+    level_first_.push_back(first + 1);
+    device_.reserve(levels_, sizeof levels, "the levels of a tree");
+    device_.write(levels_, &levels, sizeof levels);
+    device_.reserve(tree_, (std::size_t{first} + 1) * width_ * 6 * sizeof(float), "a tree of boxes");
+    device_.reserve(order_, n * sizeof(std::uint32_t), "the order of boxes");
+    device_.reserve(measures_, level_first_.size() * items_for(blocks_ + width_) * sizeof(BvhMeasure),
+                    "the measures of a tree");
+}
+
+// Chooses the cells of the Morton code and the classes of size; returns the bits of a key.
+unsigned BvhTree::write_frame(const BoxStatistics& stats) {
+    double extent[3], widest = 0.0;
+    const float median = median_width(stats);
+    for (std::size_t d = 0; d < 3; ++d) {
+        // Centres lie half a width above the min corners.
+        extent[d] =
+            static_cast<double>(stats.high[d]) - static_cast<double>(stats.low[d]) + static_cast<double>(median);
+        widest = std::max(widest, extent[d]);
+    }
+    BvhFrame frame{};
+    unsigned classes = 1;
+    for (std::size_t c = 0; c < 3; ++c) {
+        frame.size_limit[c] = 4.0f * median * static_cast<float>(1u << (3 * c));
+        if (!stats.widths.empty() && stats.widths.back().widest > frame.size_limit[c])
+            classes = static_cast<unsigned>(c) + 2;
+    }
+    const unsigned class_bits = bits_of(classes - 1);
+    // A pass of the sort takes 8 bits: those that are paid for are used.
+    unsigned axis = stats.boxes > 0 ? axis_bits(stats, extent, widest, median) : 1;
+    axis = std::min(((class_bits + 3 * axis + 7) / 8 * 8 - class_bits) / 3, class_bits > 0 ? 20u : 21u);
+    for (std::size_t d = 0; d < 3; ++d) frame.origin[d] = stats.low[d];
+    const double cells = static_cast<double>(std::uint64_t{1} << axis);
+    frame.scale = widest > 0.0 ? static_cast<float>(std::min(cells / widest, 1e30)) : 0.0f;
+    frame.most_cells = static_cast<float>(cells - 1.0);
+    frame.class_shift = 3 * axis;
+    frame.most_class = classes - 1;
+    frame.measure = widest > 0.0 ? static_cast<float>(std::min(1.0 / widest, 1e30)) : 0.0f;
+    device_.reserve(frame_, sizeof frame, "the frame of a tree");
+    device_.write(frame_, &frame, sizeof frame);
+    return 3 * axis + class_bits;
+}
+
+// Sorts the boxes.
+void BvhTree::build(BoxInput& boxes) {
+    const std::uint32_t n = boxes.count();
+    const unsigned bits = write_frame(statistics_.gather(boxes));
+    const bool wide = bits > 32;
+    Kernel& keys = wide ? keys64_kernel_ : keys32_kernel_;
+    if (!keys) keys = device_.kernel("broad_phase/bvh", "bvh_keys", wide ? "-DKEY=ulong" : "");
+    device_.reserve(keys_, std::size_t{n} * (wide ? sizeof(std::uint64_t) : sizeof(std::uint32_t)), "Morton codes");
+    device_.launch_items(keys.args(boxes.on(device_), boxes.first(), n, frame_, keys_), n);
+    (wide ? sort64_ : sort32_).sort(keys_, order_, n, bits, true);
+}
+
+// Computes all blocks of boxes and all nodes in the order there is. Returns the sum of the sizes of nodes. Waits.
+double BvhTree::fit(BoxInput& boxes) {
+    if (!leaves_kernel_) {
+        leaves_kernel_ = device_.kernel("broad_phase/bvh", "bvh_leaves");
+        level_kernel_ = device_.kernel("broad_phase/bvh", "bvh_level");
+    }
+    const std::size_t group = device_.group_size();
+    std::uint32_t first_measure = 0;
+    for (std::size_t level = 1; level + 1 < level_first_.size(); ++level) {
+        const std::uint32_t below = level_first_[level] - level_first_[level - 1];
+        const std::uint32_t nodes = (level_first_[level + 1] - level_first_[level]) * width_;
+        const std::uint32_t items = items_for(nodes), per_item = (nodes - 1) / items + 1;
+        if (level == 1)
+            leaves_kernel_.args(boxes.on(device_), boxes.first(), order_, boxes.count(), frame_, below, level_first_[1],
+                                nodes, per_item, items, tree_, first_measure, measures_);
+        else
+            level_kernel_.args(frame_, level_first_[level - 1], below, level_first_[level], nodes, per_item, items,
+                               tree_, first_measure, measures_);
+        device_.launch(level == 1 ? leaves_kernel_ : level_kernel_, (items + group - 1) / group, group);
+        first_measure += items;
+    }
+    std::vector<BvhMeasure> measures(first_measure);
+    device_.read(measures_, measures.data(), measures.size() * sizeof measures[0]);
+    double size = 0.0;
+    any_invalid_ = false;
+    for (const BvhMeasure& measure : measures) {
+        size += static_cast<double>(measure.size);
+        any_invalid_ = any_invalid_ || measure.invalid != 0;
+    }
+    return size;
+}
+
+void BvhTree::update(BoxInput& boxes) {
+    const bool try_old_order = n_ == boxes.count() && !worn_;
+    const bool same_shape = n_ == boxes.count();
+    n_ = 0;  // until all went well
+    kept_order_ = try_old_order && fit(boxes) <= most_growth * size_when_built_;
+    if (!kept_order_) {
+        if (!same_shape) shape(boxes.count());
+        build(boxes);
+        size_when_built_ = fit(boxes);
+        tests_when_built_ = 0;
+        worn_ = false;
+    }
+    n_ = boxes.count();
+}
+
+void BvhTree::searched(std::uint64_t box_tests) {
+    if (tests_when_built_ == 0)
+        tests_when_built_ = box_tests;
+    else
+        worn_ = static_cast<double>(box_tests) > most_test_growth * static_cast<double>(tests_when_built_);
+}
+
+}  // namespace clinch::detail

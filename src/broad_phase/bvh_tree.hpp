@@ -1,0 +1,66 @@
+// The tree of the broad phase `bvh` (cl/broad_phase/bvh.cl): built, kept and refitted on a device.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "src/broad_phase/box_statistics.hpp"
+#include "src/broad_phase/inputs.hpp"
+#include "src/device/device.hpp"
+#include "src/primitives/radix_sort.hpp"
+
+namespace clinch::detail {
+
+struct BvhFrame;
+struct BvhLevels;
+
+/// An implicit tree of WIDTH-wide nodes over boxes in Morton order. Which order it has is a matter of speed alone: any
+/// search of it gives the same pairs.
+class BvhTree {
+public:
+    explicit BvhTree(Device& device);
+
+    /// Makes the tree hold `boxes`, at least two. The order of the last call is kept while the number of boxes
+    /// is the same and the tree has not become much worse than it was when built; else the boxes are sorted again.
+    /// Waits. Cost: reads the boxes once; building reads them twice more and sorts them.
+    void update(BoxInput& boxes);
+    /// Tells the box tests that a search of the tree took: the next update builds anew when they have become many more
+    /// than right after the last build.
+    void searched(std::uint64_t box_tests);
+
+    /// The last update kept the order.
+    bool kept_order() const noexcept { return kept_order_; }
+    /// There was a box that is no box.
+    bool any_invalid() const noexcept { return any_invalid_; }
+    /// Boxes a block.
+    std::uint32_t width() const noexcept { return width_; }
+    /// Blocks of boxes.
+    std::uint32_t blocks() const noexcept { return blocks_; }
+    /// As the kernel bvh_search takes them.
+    const Buffer& nodes() const noexcept { return tree_; }
+    const Buffer& levels() const noexcept { return levels_; }
+    const Buffer& order() const noexcept { return order_; }
+
+private:
+    void shape(std::uint32_t n);
+    void build(BoxInput& boxes);
+    unsigned write_frame(const BoxStatistics& stats);
+    double fit(BoxInput& boxes);
+    std::uint32_t items_for(std::uint32_t nodes) const;
+
+    Device& device_;
+    const std::uint32_t width_;
+    StatisticsGatherer statistics_;
+    RadixSort sort32_, sort64_;
+    Kernel keys32_kernel_, keys64_kernel_, leaves_kernel_, level_kernel_;
+    Buffer frame_, levels_, keys_, order_, tree_, measures_;
+    std::vector<std::uint32_t> level_first_;  // block where each level begins; the last is the number of blocks
+    std::uint32_t n_ = 0;                     // boxes of the last update that went well, else 0
+    std::uint32_t blocks_ = 0;
+    double size_when_built_ = 0.0;
+    std::uint64_t tests_when_built_ = 0;
+    bool worn_ = false, kept_order_ = false, any_invalid_ = false;
+};
+
+}  // namespace clinch::detail
