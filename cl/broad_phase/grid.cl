@@ -7,6 +7,8 @@
 // cells between those of the two ends hold all of them: no proof about cell boundaries is needed.
 // Each pair once: of two small boxes the one with the lower min z (ties: the earlier entry) finds the other. So the cells
 // of an axis are looked through from min_z_i on only, and there is nothing to remove afterwards.
+// LANES entries that follow one another, which are near one another, are looked for at once: they share the window and
+// each entry in it is tested against all of them (on a GPU LANES is 1 and the hardware does likewise).
 // Empty space costs nothing: when the world has more cells than is worth while, cell numbers wrap around (power of two
 // on that axis), so that far apart cells share a number and the box test tells them apart.
 //
@@ -14,10 +16,13 @@
 //   grid_gather  boxes, order (payload of the sorted keys) -> columns in that order, padded with NaN
 //   grid_starts  sorted keys -> start[c]: first entry with a key >= c, for c up to cells + 2
 //   grid_small   small against small    grid_large  large against small    grid_giants  large against large
-// Defines: LANES, FILTERS
+// Defines: LANES, FILTERS; ENTRIES (16): small entries a task of grid_small, a multiple of LANES
 #include "common/lanes.clh"
 #include "common/box.clh"
 #include "broad_phase/pair_sink.clh"
+#ifndef ENTRIES
+#define ENTRIES 16
+#endif
 
 // As GridFrame in src/broad_phase/grid.cpp.
 typedef struct {
@@ -28,6 +33,8 @@ typedef struct {
     uint cells;
     float widest;     // of a small box
     float reach;      // a little more: what to look back from a min corner
+    float span;       // boxes this near on x, and
+    float side;       // this near on y and z, are looked for together
 } GridFrame;
 
 // Unwrapped cell number of a coordinate; grows with it. Beyond the grid's ends it is clamped to them.
@@ -110,8 +117,6 @@ inline CellRange cells_between(float from, float to, uint d, constant GridFrame*
     return r;
 }
 
-inline uint next_cell(uint c, uint d, constant GridFrame* g) { return c + 1 == g->size[d] ? 0 : c + 1; }
-
 inline GridBox box_at(global const float* columns, ulong stride, uint i) {
     GridBox b;
     for (uint d = 0; d < 3; ++d) {
@@ -121,65 +126,136 @@ inline GridBox box_at(global const float* columns, ulong stride, uint i) {
     return b;
 }
 
-// Entries [from, to) against box i. With `forward` only those whose min z is above the box's, or equal and
-// later in order.
-inline void test_run(global const float* columns, ulong stride, global const uint* order, const GridBox* b, uint i, uint id,
-                     uint from, uint to, bool forward, PairSink* sink) {
-    const floatN min_x = b->min[0], min_y = b->min[1], max_x = b->max[0], max_y = b->max[1], max_z = b->max[2];
-    const floatN min_z = b->min[2];
+inline uint next_cell(uint c, uint d, constant GridFrame* g) { return c + 1 == g->size[d] ? 0 : c + 1; }
+
+// Where entries lie in memory.
+typedef struct {
+    global const float* columns;
+    ulong stride;
+    global const uint* order;
+} Entries;
+
+// LANES small boxes that are looked for at once, entry i and those after it.
+typedef struct {
+    floatN min_x, min_y, max_x, max_y;
+    intN above, end;  // a box is found if its min z, as a key, is at or above `above`, and not above `end`
+    uint i;
+} Query;
+
+// Grows with the coordinate, one key for both zeros.
+inline int z_key(float z) {
+    int bits = as_int(z + 0.0f);
+    return bits ^ ((bits >> 31) & 0x7fffffff);
+}
+inline intN z_keys(floatN z) {
+    intN bits = as_intN(z + 0.0f);
+    return bits ^ ((bits >> 31) & 0x7fffffff);
+}
+
+// Small entries [from, to) against the query boxes: found are those whose z key is at or above `above`.
+inline void test_run(const Entries* e, const Query* q, intN above, uint from, uint to, PairSink* sink) {
+    const floatN min_x = q->min_x, min_y = q->min_y, max_x = q->max_x, max_y = q->max_y;
+    const intN end = q->end;
+    const ulong stride = e->stride;
+    global const uint* ids = e->order + q->i;
+    for (uint j = from; j < to; ++j) {
+        global const float* p = e->columns + j;
+        int z = z_key(p[2 * stride]);
+        uint bits = lane_bits(as_mask((p[0] <= max_x) & (p[stride] <= max_y) & (p[3 * stride] >= min_x) & (p[4 * stride] >= min_y) &
+                                      (above <= z) & (end >= z)));
+        if (bits != 0) sink_put_lanes(sink, ids, bits, e->order[j]);
+    }
+}
+
+// A query box finds the small entries of a greater z key, and of those of the same key the later ones.
+inline void test_queries(const Entries* e, const Query* q, uint from, uint to, PairSink* sink) {
+    sink->counts.tests += (ulong)(to - from) * LANES;
+    const intN above = q->above;
+    uint j = min(to, max(from, q->i));
+    test_run(e, q, above + 1, from, j, sink);
+    for (; j < q->i + LANES && j < to; ++j)  // j - q->i query boxes stand before entry j
+        test_run(e, q, above + as_intN(as_mask(lane_numbers >= j - q->i) & 1u), j, j + 1, sink);
+    test_run(e, q, above, j, to, sink);
+}
+
+// Entries [from, to) against one box, LANES at a time.
+inline void test_entries(const Entries* e, const GridBox* b, uint id, uint from, uint to, PairSink* sink) {
+    const float min_x = b->min[0], min_y = b->min[1], min_z = b->min[2];
+    const float max_x = b->max[0], max_y = b->max[1], max_z = b->max[2];
+    const ulong stride = e->stride;
     sink->counts.tests += to - from;
     for (uint j = from; j < to; j += LANES) {
-        global const float* p = columns + j;
-        // A box found forward begins at or above this one, so it ends above it too.
-        floatN above = load_lanes(0, p + (forward ? 2 : 5) * stride);
-        uintN m = as_mask((load_lanes(0, p) <= max_x) & (load_lanes(0, p + stride) <= max_y) & (load_lanes(0, p + 2 * stride) <= max_z) &
-                          (load_lanes(0, p + 3 * stride) >= min_x) & (load_lanes(0, p + 4 * stride) >= min_y) & (above >= min_z));
-        uint bits = lane_bits(m);
+        global const float* p = e->columns + j;
+        uint bits = lane_bits(as_mask((load_lanes(0, p) <= max_x) & (load_lanes(0, p + stride) <= max_y) &
+                                      (load_lanes(0, p + 2 * stride) <= max_z) & (load_lanes(0, p + 3 * stride) >= min_x) &
+                                      (load_lanes(0, p + 4 * stride) >= min_y) & (load_lanes(0, p + 5 * stride) >= min_z)));
         if (to - j < LANES) bits &= (1u << (to - j)) - 1;
-        for (; bits != 0; bits &= bits - 1) {
-            uint k = j + lowest_bit(bits);
-            if (forward && k <= i && columns[2 * stride + k] == b->min[2]) continue;
-            sink_put(sink, id, order[k]);
+        if (bits != 0) sink_put_lanes(sink, e->order + j, bits, id);
+    }
+}
+
+// All small entries in the cells of the window between `low` and `high`, against query boxes.
+inline void test_window(const Entries* e, global const uint* start, constant GridFrame* g, const Query* q, const GridBox* window,
+                        PairSink* sink) {
+    CellRange x = cells_between(window->min[0] - g->reach, window->max[0], 0, g);
+    CellRange y = cells_between(window->min[1] - g->reach, window->max[1], 1, g);
+    CellRange z = cells_between(window->min[2], window->max[2], 2, g);
+    for (uint zk = 0, zc = z.low; zk < z.count; ++zk, zc = next_cell(zc, 2, g))
+        for (uint yk = 0, yc = y.low; yk < y.count; ++yk, yc = next_cell(yc, 1, g)) {
+            uint first = (zc * g->size[1] + yc) * g->size[0];
+            uint end = x.low + x.count;
+            test_queries(e, q, start[first + x.low], start[first + min(end, g->size[0])], sink);
+            if (end > g->size[0])  // wrapped around
+                test_queries(e, q, start[first], start[first + end - g->size[0]], sink);
         }
+}
+
+// Entries i to i + LANES, of which bits of `lanes` are set, against all small entries they can reach.
+inline void search(const Entries* e, global const uint* start, constant GridFrame* g, uint i, uint lanes, PairSink* sink) {
+    const ulong stride = e->stride;
+    global const float* p = e->columns + i;
+    const floatN min_x = load_lanes(0, p), min_y = load_lanes(0, p + stride), min_z = load_lanes(0, p + 2 * stride);
+    const floatN max_x = load_lanes(0, p + 3 * stride), max_y = load_lanes(0, p + 4 * stride), max_z = load_lanes(0, p + 5 * stride);
+    Query q;
+    q.min_x = min_x;
+    q.min_y = min_y;
+    q.max_x = max_x;
+    q.max_y = max_y;
+    q.above = z_keys(min_z);
+    q.i = i;
+    while (lanes != 0) {
+        // Together go those near the first one left: one window is then not much larger than each of theirs.
+        global const float* leader = p + lowest_bit(lanes);
+        const float x = leader[0], y = leader[stride], z = leader[2 * stride];
+        uint near = lanes & lane_bits(as_mask((fabs(min_x - x) <= g->span) & (fabs(min_y - y) <= g->side) & (fabs(min_z - z) <= g->side)));
+        near |= lanes & (0u - lanes);
+        lanes &= ~near;
+        const intN member = as_intN(as_mask((((uintN)(near) >> lane_numbers) & 1u) != 0u));
+        const floatN none = INFINITY;
+        GridBox window;
+        window.min[0] = lowest_lane(select(none, min_x, member));
+        window.min[1] = lowest_lane(select(none, min_y, member));
+        window.min[2] = lowest_lane(select(none, min_z, member));
+        window.max[0] = highest_lane(select(-none, max_x, member));
+        window.max[1] = highest_lane(select(-none, max_y, member));
+        window.max[2] = highest_lane(select(-none, max_z, member));
+        q.end = select((intN)(INT_MIN), z_keys(max_z), member);
+        test_window(e, start, g, &q, &window, sink);
     }
 }
 
-// All entries in the given cells of one row (y, z) against box i.
-inline void test_row(global const float* columns, ulong stride, global const uint* order, global const uint* start, constant GridFrame* g,
-                     uint row, CellRange x, const GridBox* b, uint i, uint id, bool forward, PairSink* sink) {
-    uint first = row * g->size[0];
-    uint end = x.low + x.count;
-    test_run(columns, stride, order, b, i, id, start[first + x.low], start[first + min(end, g->size[0])], forward, sink);
-    if (end > g->size[0])  // wrapped around
-        test_run(columns, stride, order, b, i, id, start[first], start[first + end - g->size[0]], forward, sink);
-}
-
-// All rows of cells that box i can reach, of the layers z.low + first, + step, ... of z.
-inline void test_rows(global const float* columns, ulong stride, global const uint* order, global const uint* start,
-                      constant GridFrame* g, uint i, bool forward, uint first, uint step, PairSink* sink) {
-    GridBox b = box_at(columns, stride, i);
-    CellRange x = cells_between(b.min[0] - g->reach, b.max[0], 0, g);
-    CellRange y = cells_between(b.min[1] - g->reach, b.max[1], 1, g);
-    CellRange z = cells_between(forward ? b.min[2] : b.min[2] - g->reach, b.max[2], 2, g);
-    uint id = order[i];
-    for (uint zk = first; zk < z.count; zk += step) {
-        uint zc = z.low + zk;
-        if (zc >= g->size[2]) zc -= g->size[2];
-        for (uint yk = 0, yc = y.low; yk < y.count; ++yk, yc = next_cell(yc, 1, g))
-            test_row(columns, stride, order, start, g, zc * g->size[1] + yc, x, &b, i, id, forward, sink);
-    }
-}
-
-// One task: 16 entries.
-#define ENTRIES 16
-
+// One task: ENTRIES small entries.
 kernel void grid_small(global const float* restrict columns, ulong stride, global const uint* restrict order,
                        global const uint* restrict start, constant GridFrame* g, SINK_PARAMS) {
     PairSink sink = sink_begin(SINK_ARGS);
+    Entries e;
+    e.columns = columns;
+    e.stride = stride;
+    e.order = order;
     uint small = start[g->cells];
     for (uint task = sink_task(&sink); task < sink.task_end; task = sink_task(&sink)) {
-        for (uint i = task * ENTRIES, end = min(small, (task + 1) * ENTRIES); i < end; ++i)
-            test_rows(columns, stride, order, start, g, i, true, 0, 1, &sink);
+        for (uint i = task * ENTRIES, end = min(small, (task + 1) * ENTRIES); i < end; i += LANES)
+            search(&e, start, g, i, end - i < LANES ? (1u << (end - i)) - 1 : (uint)ALL_LANES, &sink);
     }
     sink_end(&sink);
 }
@@ -190,9 +266,29 @@ kernel void grid_small(global const float* restrict columns, ulong stride, globa
 kernel void grid_large(global const float* restrict columns, ulong stride, global const uint* restrict order,
                        global const uint* restrict start, constant GridFrame* g, SINK_PARAMS) {
     PairSink sink = sink_begin(SINK_ARGS);
+    Entries e;
+    e.columns = columns;
+    e.stride = stride;
+    e.order = order;
     uint large = start[g->cells];
-    for (uint task = sink_task(&sink); task < sink.task_end; task = sink_task(&sink))
-        test_rows(columns, stride, order, start, g, large + task / PARTS, false, task & (PARTS - 1), PARTS, &sink);
+    for (uint task = sink_task(&sink); task < sink.task_end; task = sink_task(&sink)) {
+        uint i = large + task / PARTS;
+        GridBox b = box_at(columns, stride, i);
+        CellRange x = cells_between(b.min[0] - g->reach, b.max[0], 0, g);
+        CellRange y = cells_between(b.min[1] - g->reach, b.max[1], 1, g);
+        CellRange z = cells_between(b.min[2] - g->reach, b.max[2], 2, g);
+        for (uint zk = task & (PARTS - 1); zk < z.count; zk += PARTS) {
+            uint zc = z.low + zk;
+            if (zc >= g->size[2]) zc -= g->size[2];
+            for (uint yk = 0, yc = y.low; yk < y.count; ++yk, yc = next_cell(yc, 1, g)) {
+                uint first = (zc * g->size[1] + yc) * g->size[0];
+                uint end = x.low + x.count;
+                test_entries(&e, &b, order[i], start[first + x.low], start[first + min(end, g->size[0])], &sink);
+                if (end > g->size[0])  // wrapped around
+                    test_entries(&e, &b, order[i], start[first], start[first + end - g->size[0]], &sink);
+            }
+        }
+    }
     sink_end(&sink);
 }
 
@@ -200,11 +296,15 @@ kernel void grid_large(global const float* restrict columns, ulong stride, globa
 kernel void grid_giants(global const float* restrict columns, ulong stride, global const uint* restrict order,
                         global const uint* restrict start, uint cells, SINK_PARAMS) {
     PairSink sink = sink_begin(SINK_ARGS);
+    Entries e;
+    e.columns = columns;
+    e.stride = stride;
+    e.order = order;
     uint large = start[cells], end = start[cells + 1];
     for (uint task = sink_task(&sink); task < sink.task_end; task = sink_task(&sink)) {
         uint i = large + task;
         GridBox b = box_at(columns, stride, i);
-        test_run(columns, stride, order, &b, i, order[i], i + 1, end, false, &sink);
+        test_entries(&e, &b, order[i], i + 1, end, &sink);
     }
     sink_end(&sink);
 }

@@ -22,12 +22,14 @@ struct GridFrame {
     std::uint32_t cells;
     float widest;
     float reach;
+    float span;
+    float side;
+    float unused[15];  // to a size that is set without waiting
 };
-static_assert(sizeof(GridFrame) == 60, "kernels read this layout");
+static_assert(sizeof(GridFrame) == 128, "kernels read this layout");
 
-constexpr std::uint32_t padding = 64;         // entries behind the last that vector loads may touch
-constexpr std::uint32_t entries_a_task = 16;  // ENTRIES of grid_small
-constexpr std::uint32_t parts = 8;            // PARTS of grid_large
+constexpr std::uint32_t padding = 64;  // entries behind the last that vector loads may touch
+constexpr std::uint32_t parts = 8;     // PARTS of grid_large
 
 unsigned bits_of(std::uint64_t value) {
     unsigned bits = 0;
@@ -35,38 +37,74 @@ unsigned bits_of(std::uint64_t value) {
     return bits;
 }
 
-// What is chosen from the statistics: which boxes are small, and the side of a cell.
+// What is chosen from the statistics: which boxes are small, and the sides of a cell.
 struct Choice {
     float widest = 0.0f;
-    double side = 1.0;
+    double side_x = 1.0, side = 1.0;  // along x; along y and z
     std::uint32_t small = 0;
 };
 
-// Work of a choice in box tests, taking the small boxes as spread evenly: what a box looks through, and a
-// price for each row of cells it visits.
-double cost_of(const BoxStatistics& stats, std::size_t small_classes, double side, const double* extent) {
-    constexpr double row_price = 12.0, large_price = 200.0;
-    const double widest = static_cast<double>(stats.widths[small_classes - 1].widest);
-    double small = 0.0, looked = 0.0, rows = 0.0, giants = 0.0;
-    for (std::size_t c = 0; c < small_classes; ++c) small += stats.widths[c].count;
-    const double density = small / ((extent[0] + widest) * (extent[1] + widest) * (extent[2] + widest));
-    for (std::size_t c = 0; c < stats.widths.size(); ++c) {
-        const double width = static_cast<double>(stats.widths[c].widest), count = stats.widths[c].count;
-        const bool is_small = c < small_classes;
-        const auto cells = [&](double length, int d) { return std::min(length, extent[d] + side) / side + 1.0; };
-        const double z = cells(is_small ? width : width + widest, 2), y = cells(width + widest, 1),
-                     x = cells(width + widest, 0);
-        looked += count * density * x * y * z * side * side * side;
-        rows += count * z * y;
-        if (!is_small) giants += count;
-    }
-    return looked / 4.0 + row_price * rows + large_price * giants + giants * giants / 16.0;
-}
+// Boxes are looked for together as long as they are within so many times what one looks through on x.
+constexpr double span_windows = 6.0;
 
-Choice choose(const BoxStatistics& stats) {
-    double extent[3];
-    for (std::size_t d = 0; d < 3; ++d)
-        extent[d] = static_cast<double>(stats.high[d]) - static_cast<double>(stats.low[d]);
+// What a choice costs, in tests of LANES boxes, taking the small boxes as spread evenly.
+class CostModel {
+public:
+    // `crowding`: how many times denser than on average it is where a box is.
+    CostModel(const BoxStatistics& stats, double lanes, double crowding)
+        : stats_(stats), lanes_(lanes), crowding_(crowding) {
+        for (std::size_t d = 0; d < 3; ++d) extent_[d] = stats.extent(d);
+    }
+    double of(std::size_t small_classes, const Choice& choice) const {
+        const double widest = static_cast<double>(choice.widest);
+        const double density =
+            crowding_ * choice.small / ((extent_[0] + widest) * (extent_[1] + widest) * (extent_[2] + widest) + 1e-300);
+        double cost = cells(choice) * cell_price + of_small(choice, density);
+        double giants = 0.0;
+        for (std::size_t c = small_classes; c < stats_.widths.size(); ++c) {
+            const double count = stats_.widths[c].count;
+            giants += count;
+            cost += count * (large_price + of_large(choice, density, static_cast<double>(stats_.widths[c].widest)));
+        }
+        return cost + giants * giants / lanes_;
+    }
+    double cells(const Choice& choice) const {
+        const double all =
+            (extent_[0] / choice.side_x + 1.0) * (extent_[1] / choice.side + 1.0) * (extent_[2] / choice.side + 1.0);
+        return std::min(all, 4.0 * choice.small);
+    }
+
+private:
+    static constexpr double cell_price = 0.2, row_price = 6.0, group_price = 12.0, large_price = 100.0;
+
+    // How far one looks on an axis: what is wanted and the cells that stick out, at most the whole grid.
+    double reach(double wanted, double side, std::size_t d) const {
+        return std::min(wanted + side, extent_[d] + 2.0 * side);
+    }
+    double of_small(const Choice& choice, double density) const {
+        const double widest = static_cast<double>(choice.widest);
+        const double a_row = density * choice.side * std::min(choice.side, extent_[2] + choice.side);
+        const double window = 2.0 * widest + choice.side_x;
+        const double members = std::clamp(a_row * window * span_windows, 1.0, lanes_);
+        const double spread = (members - 1.0) / (members + 1.0) * choice.side;
+        const double x = reach((members - 1.0) / (a_row + 1e-300) + 2.0 * widest, choice.side_x, 0),
+                     y = reach(spread + 2.0 * widest, choice.side, 1), z = reach(spread + widest, choice.side, 2);
+        const double rows = y * z / (choice.side * choice.side);
+        return choice.small / members * (density * x * y * z + row_price * rows + group_price);
+    }
+    double of_large(const Choice& choice, double density, double width) const {
+        const double widest = static_cast<double>(choice.widest);
+        const double x = reach(width + widest, choice.side_x, 0), y = reach(width + widest, choice.side, 1),
+                     z = reach(width + widest, choice.side, 2);
+        return 1.5 * density * x * y * z / lanes_ + row_price * y * z / (choice.side * choice.side);
+    }
+
+    const BoxStatistics& stats_;
+    double lanes_, crowding_;
+    double extent_[3];
+};
+
+Choice best_choice(const BoxStatistics& stats, const CostModel& model) {
     Choice best;
     double lowest = 0.0;
     std::uint32_t small = 0;
@@ -75,31 +113,37 @@ Choice choose(const BoxStatistics& stats) {
         if (small < stats.boxes / 2) continue;
         const float widest = stats.widths[classes - 1].widest;
         // Boxes without any width still need cells: as many as there are boxes.
-        const double room = std::cbrt((extent[0] + 1e-30) * (extent[1] + 1e-30) * (extent[2] + 1e-30) / stats.boxes);
+        const double room =
+            std::cbrt((stats.extent(0) + 1e-30) * (stats.extent(1) + 1e-30) * (stats.extent(2) + 1e-30) / stats.boxes);
         const double base = widest > 0.0f ? static_cast<double>(widest) : std::max(room, 1e-30);
-        for (const double factor : {0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 8.0, 16.0}) {
-            const double cost = cost_of(stats, classes, base * factor, extent);
-            if (best.small != 0 && cost >= lowest) continue;
-            lowest = cost;
-            best = {widest, base * factor, small};
-        }
+        for (const double factor : {0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 8.0, 16.0})
+            for (const double along_x : {0.35, 0.7, 1.4}) {
+                const Choice choice{widest, base * factor * along_x, base * factor, small};
+                const double cost = model.of(classes, choice);
+                if (best.small != 0 && cost >= lowest) continue;
+                lowest = cost;
+                best = choice;
+            }
     }
     return best;
+}
+
+Choice choose(const BoxStatistics& stats, double lanes) {
+    const Choice even = best_choice(stats, CostModel(stats, lanes, 1.0));
+    const double crowding = stats.crowding(4.0 * static_cast<double>(even.widest));
+    return crowding > 1.5 ? best_choice(stats, CostModel(stats, lanes, crowding)) : even;
 }
 
 GridFrame make_frame(const BoxStatistics& stats, const Choice& choice) {
     GridFrame frame{};
     // Cell numbers are floats before they are integers: up to 2^24 on an axis they are all different.
-    double side = choice.side;
-    for (std::size_t d = 0; d < 3; ++d)
-        side = std::max(side, (static_cast<double>(stats.high[d]) - static_cast<double>(stats.low[d])) / 16777216.0);
-    double wanted[3];
+    double sides[3] = {choice.side_x, choice.side, choice.side};
+    for (std::size_t d = 0; d < 3; ++d) sides[d] = std::max(sides[d], stats.extent(d) / 16777216.0);
     const double most = std::clamp(4.0 * choice.small, 4096.0, 1.0e8);
     for (std::size_t d = 0; d < 3; ++d) {
         frame.origin[d] = stats.low[d];
-        frame.scale[d] = static_cast<float>(1.0 / side);
-        wanted[d] = std::floor((static_cast<double>(stats.high[d]) - static_cast<double>(stats.low[d])) / side) + 2.0;
-        frame.size[d] = static_cast<std::uint32_t>(wanted[d]);
+        frame.scale[d] = static_cast<float>(1.0 / sides[d]);
+        frame.size[d] = static_cast<std::uint32_t>(std::floor(stats.extent(d) / sides[d]) + 2.0);
     }
     const auto cells = [&] { return double{1} * frame.size[0] * frame.size[1] * frame.size[2]; };
     while (cells() > most) {
@@ -113,6 +157,8 @@ GridFrame make_frame(const BoxStatistics& stats, const Choice& choice) {
     // A box's max is at most its min plus its width, each rounded once: covered by 2^-20 of the width, since
     // rounding keeps order.
     frame.reach = choice.widest * (1.0f + 0x1p-20f);
+    frame.span = static_cast<float>(span_windows * (2.0 * static_cast<double>(choice.widest) + sides[0]));
+    frame.side = static_cast<float>(sides[1]);
     return frame;
 }
 
@@ -126,6 +172,7 @@ public:
 private:
     void bin(BoxInput& boxes, const GridFrame& frame);
     Kernel& search_kernel(const char* name, const FilterInput& filters);
+    std::uint32_t entries_a_task() const;
 
     Device& device_;
     const BroadPhaseOptions& options_;
@@ -141,8 +188,15 @@ private:
 Kernel& Grid::search_kernel(const char* name, const FilterInput& filters) {
     const char* const defines = PairSink::defines(filters);
     Kernel& kernel = search_kernels_[name + std::string(defines)];
-    if (!kernel) kernel = device_.kernel("broad_phase/grid", name, defines);
+    if (!kernel)
+        kernel =
+            device_.kernel("broad_phase/grid", name, "-DENTRIES=" + std::to_string(entries_a_task()) + " " + defines);
     return kernel;
+}
+
+// A work-item of a CPU takes a few vectors of entries at once, of which it has only a few thousand to take.
+std::uint32_t Grid::entries_a_task() const {
+    return device_.info().lanes > 1 ? 8 * device_.info().lanes : 16;
 }
 
 // Sorts the boxes by cell and lays them out as columns.
@@ -155,9 +209,9 @@ void Grid::bin(BoxInput& boxes, const GridFrame& frame) {
     const std::uint32_t n = boxes.count();
     stride_ = std::uint64_t{n} + padding;
     device_.reserve(frame_, sizeof frame, "the frame of a grid");
-    device_.write(frame_, &frame, sizeof frame);
+    device_.set(frame_, frame);
     device_.reserve(keys_, n * sizeof(std::uint32_t), "cells of boxes");
-    device_.reserve(order_, n * sizeof(std::uint32_t), "the order of boxes");
+    device_.reserve(order_, stride_ * sizeof(std::uint32_t), "the order of boxes");
     device_.reserve(columns_, stride_ * 6 * sizeof(float), "boxes as columns");
     device_.reserve(start_, (std::size_t{frame.cells} + 3) * sizeof(std::uint32_t), "the starts of cells");
     device_.launch_items(keys_kernel_.args(boxes.on(device_), boxes.first(), n, frame_, keys_), n);
@@ -178,14 +232,14 @@ void Grid::find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, Fi
     const BoxStatistics stats = statistics_.gather(boxes);
     counts.invalid_boxes = stats.boxes < n;
     if (stats.boxes < 2) return;
-    const Choice choice = choose(stats);
+    const Choice choice = choose(stats, device_.info().lanes);
     const GridFrame frame = make_frame(stats, choice);
     bin(boxes, frame);
 
     std::vector<SinkLaunch> launches;
     Kernel& small = search_kernel("grid_small", filters);
     small.args(columns_, stride_, order_, start_, frame_);
-    launches.push_back({&small, 5, (choice.small + entries_a_task - 1) / entries_a_task});
+    launches.push_back({&small, 5, (choice.small + entries_a_task() - 1) / entries_a_task()});
     if (const std::uint32_t large_count = stats.boxes - choice.small; large_count > 0) {
         Kernel& large = search_kernel("grid_large", filters);
         large.args(columns_, stride_, order_, start_, frame_);

@@ -19,6 +19,11 @@ static_assert(sizeof(SinkTail) == 32, "kernels write this layout");
 
 constexpr std::uint32_t no_chunk = 0xffffffffu;
 
+// Room before the tails, in tails, for what the work-items share: chunks taken, and tasks taken of each launch.
+std::size_t header_tails(std::size_t launches) {
+    return ((1 + launches) * sizeof(std::uint32_t) + sizeof(SinkTail) - 1) / sizeof(SinkTail);
+}
+
 // Work-items of a launch: they take tasks one by one, so a few a core are enough.
 std::size_t workers(const Device& device) {
     const DeviceInfo& info = device.info();
@@ -100,12 +105,12 @@ void PairSink::plan(std::uint64_t pairs, std::uint64_t all_workers) {
 // Enqueues all parts.
 void PairSink::launch(const std::vector<Part>& parts, const cl_mem filters) {
     const std::size_t group = device_.group_size();
-    std::size_t first_tail = 0;
+    std::size_t first_tail = header_tails(parts.size());
     for (std::uint32_t p = 0; p < parts.size(); ++p) {
         const SinkLaunch& launch = *parts[p].launch;
         const std::size_t groups = groups_of(parts[p]);
-        launch.kernel->args_from(launch.own_parameters, pairs_, state_, tails_, static_cast<std::uint32_t>(first_tail),
-                                 p, chunk_size_, capacity_, parts[p].end,
+        launch.kernel->args_from(launch.own_parameters, pairs_, state_, static_cast<std::uint32_t>(first_tail), p,
+                                 chunk_size_, capacity_, parts[p].first, parts[p].end,
                                  launch.most_tasks == 0 ? std::numeric_limits<std::uint32_t>::max() : launch.most_tasks,
                                  filters);
         device_.launch(*launch.kernel, groups, group);
@@ -113,37 +118,34 @@ void PairSink::launch(const std::vector<Part>& parts, const cl_mem filters) {
     }
 }
 
-// What the work-items of the last launches left behind.
-void PairSink::read_tails(std::size_t count, Outcome& outcome) {
-    std::vector<SinkTail> tails(count);
+// What the work-items of the last launches left behind: `tails` of them behind a header as long as `header` tails.
+PairSink::Outcome PairSink::read_outcome(std::size_t header, std::size_t tails) {
+    std::vector<SinkTail> state(header + tails);
+    device_.read(state_, state.data(), state.size() * sizeof state[0]);
+    Outcome outcome;
+    outcome.chunks = state[0].chunk;  // the first word
+    outcome.pairs = outcome.chunks * chunk_size_;
+    outcome.fits = outcome.chunks <= capacity_;
     partial_chunks_.clear();
-    device_.read(tails_, tails.data(), tails.size() * sizeof tails[0]);
-    for (const SinkTail& tail : tails) {
+    for (std::size_t t = header; t < state.size(); ++t) {
+        const SinkTail& tail = state[t];
         outcome.counts.pairs_filtered += tail.filtered;
         outcome.counts.static_pairs += tail.unmoving;
         outcome.counts.box_tests += tail.tests;
-        if (tail.chunk != no_chunk) partial_chunks_.push_back({tail.chunk, tail.used});
+        if (tail.chunk == no_chunk) continue;
+        partial_chunks_.push_back({tail.chunk, tail.used});
+        outcome.pairs -= chunk_size_ - tail.used;
     }
+    return outcome;
 }
 
 PairSink::Outcome PairSink::run(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies) {
-    const std::size_t tails = workers_of(parts);
-    std::vector<std::uint32_t> state{0};
-    for (const Part& part : parts) state.push_back(part.first);
-    device_.reserve(state_, state.size() * sizeof state[0], "the state of a sink");
-    device_.reserve(tails_, tails * sizeof(SinkTail), "the tails of a sink");
-    device_.write(state_, state.data(), state.size() * sizeof state[0]);
+    const std::size_t header = header_tails(parts.size()), tails = workers_of(parts);
+    device_.reserve(state_, (header + tails) * sizeof(SinkTail), "the state of a sink");
+    device_.clear(state_, header * sizeof(SinkTail));
     const cl_mem filter_rows = filters.any() ? filters_.on_device(filters, bodies).handle() : state_.handle();
-
     launch(parts, filter_rows);
-    Outcome outcome;
-    read_tails(tails, outcome);
-    device_.read(state_, state.data(), sizeof state[0]);
-    outcome.chunks = state[0];
-    outcome.pairs = outcome.chunks * chunk_size_;
-    outcome.fits = outcome.chunks <= capacity_;
-    for (const PartialChunk& part : partial_chunks_) outcome.pairs -= chunk_size_ - part.used;
-    return outcome;
+    return read_outcome(header, tails);
 }
 
 void PairSink::close_gaps(const Outcome& outcome) {

@@ -60,7 +60,7 @@ private:
     void plan(std::uint64_t pairs, std::uint64_t all_workers);
     Outcome run(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies);
     void launch(const std::vector<Part>& parts, cl_mem filters);
-    void read_tails(std::size_t count, Outcome& outcome);
+    Outcome read_outcome(std::size_t header, std::size_t tails);
     void close_gaps(const Outcome& outcome);
     void deliver(const Outcome& outcome, std::uint32_t bodies, bool alone, PairList& pairs, FindCounts& counts);
     void collect_in_parts(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies,
@@ -74,7 +74,7 @@ private:
     FilterMirror filters_;
     PairSort sort_;
     Kernel move_kernel_;
-    Buffer pairs_, state_, tails_, moves_;
+    Buffer pairs_, state_, moves_;
     std::vector<PartialChunk> partial_chunks_;
     std::uint64_t expected_ = 0;  // pairs of the last call
     std::uint32_t chunk_size_ = 0, capacity_ = 0;

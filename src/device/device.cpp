@@ -227,7 +227,11 @@ void Device::read(const Buffer& buffer, void* data, std::size_t bytes, std::size
 void Device::clear(const Buffer& buffer, std::size_t bytes) {
     if (bytes == 0) return;
     const cl_uint zero = 0;
-    check(clEnqueueFillBuffer(queue(), buffer.handle(), &zero, sizeof zero, 0, bytes, 0, nullptr, nullptr),
+    fill(buffer, &zero, sizeof zero, bytes);
+}
+
+void Device::fill(const Buffer& buffer, const void* pattern, std::size_t pattern_bytes, std::size_t bytes) {
+    check(clEnqueueFillBuffer(queue(), buffer.handle(), pattern, pattern_bytes, 0, bytes, 0, nullptr, nullptr),
           "clEnqueueFillBuffer");
 }
 
