@@ -65,7 +65,7 @@ double BoxStatistics::crowding(double distance) const {
     std::vector<std::uint64_t> cells;
     cells.reserve(sample.size());
     double even = 1.0;  // chance that two boxes share a cell if they are spread evenly
-    for (std::size_t d = 0; d < 3; ++d) even *= distance / (extent(d) + distance);
+    for (std::size_t d = 0; d < 3; ++d) even *= distance / std::max(extent(d), distance);
     for (const std::array<float, 3>& corner : sample) {
         std::uint64_t cell = 0;
         for (std::size_t d = 0; d < 3; ++d) {
