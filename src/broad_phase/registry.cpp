@@ -10,6 +10,7 @@ std::unique_ptr<BroadPhaseAlgorithm> make_brute(Device* device, const BroadPhase
 std::unique_ptr<BroadPhaseAlgorithm> make_bvh(Device* device, const BroadPhaseOptions& options);
 std::unique_ptr<BroadPhaseAlgorithm> make_grid(Device* device, const BroadPhaseOptions& options);
 std::unique_ptr<BroadPhaseAlgorithm> make_host_brute(Device* device, const BroadPhaseOptions& options);
+std::unique_ptr<BroadPhaseAlgorithm> make_host_sweep(Device* device, const BroadPhaseOptions& options);
 std::unique_ptr<BroadPhaseAlgorithm> make_sweep(Device* device, const BroadPhaseOptions& options);
 
 namespace {
@@ -19,6 +20,7 @@ const AlgorithmRow rows[] = {
     {"bvh", true, false, make_bvh},
     {"grid", true, true, make_grid},
     {"host-brute", false, false, make_host_brute},
+    {"host-sweep", false, false, make_host_sweep},
     {"sweep", true, false, make_sweep},
 };
 

@@ -1,0 +1,273 @@
+// host-sweep: sweep and prune on the host, the thesis' sequential reference [1.3.1.4; Baraff 1992]. Boxes stay sorted
+// by their min on one axis from call to call; an insertion sort repairs the order, so that a still or nearly still
+// scene costs hardly more than the tests. What is kept decides time alone, never which pairs there are.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "src/broad_phase/algorithm.hpp"
+#include "src/primitives/host_parallel.hpp"
+
+namespace clinch::detail {
+namespace {
+
+constexpr std::size_t block = 16;               // boxes tested at once, in plain loops that compilers vectorise
+constexpr std::size_t rows_at_once = 256;       // boxes whose pairs make one list
+constexpr std::size_t lists_at_once = 256;      // between two calls of progress
+constexpr std::size_t serial_rows = 4096;       // up to so many boxes threads cost more than they bring
+constexpr std::size_t shifts_a_box = 16;        // an insertion sort of more is slower than sorting anew
+constexpr std::uint64_t pairs_kept = 1u << 20;  // memory for more is given back before the result takes its own
+// So many tests a box, and twice those at first, are borne before a better axis is looked for.
+constexpr std::size_t tests_borne = 64;
+
+bool valid(const Aabb& box) {
+    constexpr float most = std::numeric_limits<float>::max();
+    bool ok = true;
+    for (int d = 0; d < 3; ++d) ok &= (box.min[d] <= box.max[d]) & (box.min[d] >= -most) & (box.max[d] <= most);
+    return ok;
+}
+
+// The axis on which the centres vary most; of two alike the first.
+std::size_t axis_of_variance(View<const Aabb> boxes) {
+    std::array<double, 3> mean{}, squares{};
+    double count = 0.0;
+    for (const Aabb& box : boxes) {
+        if (!valid(box)) continue;
+        count += 1.0;
+        for (std::size_t d = 0; d < 3; ++d) {  // [Welford 1962]
+            const double centre = 0.5 * static_cast<double>(box.min[d]) + 0.5 * static_cast<double>(box.max[d]);
+            const double from = centre - mean[d];
+            mean[d] += from / count;
+            squares[d] += from * (centre - mean[d]);
+        }
+    }
+    return static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
+}
+
+// What one run of rows found.
+struct Found {
+    std::vector<Pair> pairs;
+    std::uint64_t filtered = 0, unmoving = 0, tests = 0;
+};
+
+// In the order of the axis: min and max on it, on the next one, and on the one after that.
+using Columns = std::array<std::vector<float>, 6>;
+
+// A box on the two axes that are not sorted.
+struct SideBounds {
+    float min_u, max_u, min_v, max_v;
+};
+
+// Which of the boxes from `j` on begin before `end_s` and overlap `box` on the other axes; returns whether any
+// does. A plain loop without branches, which compilers turn into vector code.
+std::uint32_t test_block(const Columns& columns, std::size_t j, float end_s, const SideBounds& box,
+                         std::uint32_t (&hits)[block]) {
+    const float *const min_s = columns[0].data() + j, *const min_u = columns[2].data() + j,
+                       *const max_u = columns[3].data() + j, *const min_v = columns[4].data() + j,
+                       *const max_v = columns[5].data() + j;
+    const SideBounds b = box;
+    std::uint32_t any = 0;
+    for (std::size_t l = 0; l < block; ++l) {
+        hits[l] = static_cast<std::uint32_t>(min_s[l] <= end_s) & static_cast<std::uint32_t>(min_u[l] <= b.max_u) &
+                  static_cast<std::uint32_t>(max_u[l] >= b.min_u) & static_cast<std::uint32_t>(min_v[l] <= b.max_v) &
+                  static_cast<std::uint32_t>(max_v[l] >= b.min_v);
+        any |= hits[l];
+    }
+    return any;
+}
+
+class HostSweep : public BroadPhaseAlgorithm {
+public:
+    explicit HostSweep(const BroadPhaseOptions& options) : options_(options) {}
+
+    void find(BoxInput& input, const FilterInput& filters, PairList& pairs, FindCounts& counts) override;
+
+private:
+    struct Entry {
+        float key;  // min on the axis; infinite for what is no box, which so stands behind all boxes
+        std::uint32_t id;
+    };
+
+    void sort_anew(View<const Aabb> boxes);
+    bool repair();
+    void line_up(View<const Aabb> boxes);
+    void fill_columns(View<const Aabb> boxes);
+    void test_rows(std::size_t first, std::size_t end, const FilterInput& filters, Found& found) const;
+    void put(std::uint32_t a, std::uint32_t b, const FilterInput& filters, Found& found) const;
+    void deliver(PairList& pairs, FindCounts& counts);
+    std::vector<Pair> joined_by_rows(std::uint64_t total) const;
+
+    const BroadPhaseOptions& options_;
+    std::vector<Entry> order_;
+    std::size_t axis_ = 0;
+    std::size_t boxes_ = 0;  // entries that are boxes: the first ones
+    Columns columns_;
+    std::uint64_t tests_at_first_ = 0;  // of the call that chose the axis
+    bool choose_axis_ = true;
+    std::vector<Found> found_;
+};
+
+void HostSweep::sort_anew(View<const Aabb> boxes) {
+    if (choose_axis_) axis_ = axis_of_variance(boxes);
+    order_.resize(boxes.size());
+    for (std::size_t i = 0; i < order_.size(); ++i)
+        order_[i] = {valid(boxes[i]) ? boxes[i].min[axis_] : std::numeric_limits<float>::infinity(),
+                     static_cast<std::uint32_t>(i)};
+    std::sort(order_.begin(), order_.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
+}
+
+// Insertion sort; gives up, with the entries all there in some order, when it takes too long.
+bool HostSweep::repair() {
+    std::size_t left = shifts_a_box * order_.size();
+    for (std::size_t i = 1; i < order_.size(); ++i) {
+        const Entry entry = order_[i];
+        std::size_t k = i;
+        for (; k > 0 && entry.key < order_[k - 1].key; --k) order_[k] = order_[k - 1];
+        order_[k] = entry;
+        if (i - k > left) return false;
+        left -= i - k;
+    }
+    return true;
+}
+
+// Brings the boxes in order.
+void HostSweep::line_up(View<const Aabb> boxes) {
+    bool sorted = false;
+    if (order_.size() == boxes.size() && !choose_axis_) {
+        for (Entry& entry : order_) {
+            const Aabb& box = boxes[entry.id];
+            entry.key = valid(box) ? box.min[axis_] : std::numeric_limits<float>::infinity();
+        }
+        sorted = repair();
+    } else {
+        choose_axis_ = true;
+    }
+    if (!sorted) sort_anew(boxes);
+    const auto first_none = std::partition_point(order_.begin(), order_.end(), [](const Entry& entry) {
+        return entry.key < std::numeric_limits<float>::infinity();
+    });
+    boxes_ = static_cast<std::size_t>(first_none - order_.begin());
+}
+
+void HostSweep::fill_columns(View<const Aabb> boxes) {
+    const std::size_t u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
+    for (auto& column : columns_) column.resize(boxes_ + block);
+    for (std::size_t i = 0; i < boxes_; ++i) {
+        const Aabb& box = boxes[order_[i].id];
+        columns_[0][i] = order_[i].key;
+        columns_[1][i] = box.max[axis_];
+        columns_[2][i] = box.min[u];
+        columns_[3][i] = box.max[u];
+        columns_[4][i] = box.min[v];
+        columns_[5][i] = box.max[v];
+    }
+    for (auto& column : columns_)  // ends every range
+        std::fill(column.begin() + static_cast<std::ptrdiff_t>(boxes_), column.end(),
+                  std::numeric_limits<float>::infinity());
+}
+
+void HostSweep::put(std::uint32_t a, std::uint32_t b, const FilterInput& filters, Found& found) const {
+    if (!filters.allows(a, b))
+        ++found.filtered;
+    else if (!filters.can_move(a) && !filters.can_move(b))
+        ++found.unmoving;
+    else
+        found.pairs.push_back({std::min(a, b), std::max(a, b)});
+}
+
+// Rows [first, end) of the order against those behind them that begin before they end.
+void HostSweep::test_rows(std::size_t first, std::size_t end, const FilterInput& filters, Found& found) const {
+    for (std::size_t i = first; i < end; ++i) {
+        const float end_s = columns_[1][i];
+        const SideBounds box{columns_[2][i], columns_[3][i], columns_[4][i], columns_[5][i]};
+        std::size_t j = i + 1;
+        for (; columns_[0][j] <= end_s; j += block) {
+            std::uint32_t hits[block];
+            if (test_block(columns_, j, end_s, box, hits) == 0) continue;
+            for (std::size_t l = 0; l < block; ++l)
+                if (hits[l] != 0) put(order_[i].id, order_[j + l].id, filters, found);
+        }
+        found.tests += std::min(j, boxes_) - (i + 1);
+    }
+}
+
+// All pairs in order: counted, scanned and filled by their first body, each such row sorted by itself.
+std::vector<Pair> HostSweep::joined_by_rows(std::uint64_t total) const {
+    std::vector<std::uint64_t> ends(order_.size() + 1, 0);
+    for (const Found& part : found_)
+        for (const Pair& pair : part.pairs) ++ends[std::size_t{pair.a} + 1];
+    std::partial_sum(ends.begin(), ends.end(), ends.begin());
+    std::vector<Pair> all(total);
+    for (const Found& part : found_)  // a row's entry moves from its first to its end
+        for (const Pair& pair : part.pairs) all[ends[pair.a]++] = pair;
+    const auto at = [&](std::uint64_t i) { return all.begin() + static_cast<std::ptrdiff_t>(i); };
+    const std::size_t runs = (order_.size() + rows_at_once - 1) / rows_at_once;
+    parallel_for(runs, order_.size() > serial_rows, [&](std::size_t run) {
+        const std::size_t end = std::min(order_.size(), (run + 1) * rows_at_once);
+        for (std::size_t a = run * rows_at_once; a < end; ++a) std::sort(at(a == 0 ? 0 : ends[a - 1]), at(ends[a]));
+    });
+    return all;
+}
+
+void HostSweep::deliver(PairList& pairs, FindCounts& counts) {
+    std::uint64_t total = 0, tests = 0;
+    for (const Found& part : found_) {
+        total += part.pairs.size();
+        tests += part.tests;
+        counts.pairs_filtered += part.filtered;
+        counts.static_pairs += part.unmoving;
+    }
+    counts.box_tests += tests;
+    if (choose_axis_) tests_at_first_ = tests;
+    choose_axis_ = tests / 2 > tests_at_first_ + tests_borne * boxes_;
+    check_limit(total, options_);
+    if (options_.order == Order::Sorted && total > order_.size() / 16) {
+        const std::vector<Pair> all = joined_by_rows(total);
+        if (total > pairs_kept) found_.clear();
+        pairs.append(all);
+        return;
+    }
+    std::vector<Pair> few;  // sorting them takes less than a look at every row
+    const bool sorted = options_.order == Order::Sorted;
+    for (const Found& part : found_) {
+        if (sorted)
+            few.insert(few.end(), part.pairs.begin(), part.pairs.end());
+        else
+            pairs.append(part.pairs);
+    }
+    std::sort(few.begin(), few.end());
+    if (sorted) pairs.append(few);
+}
+
+void HostSweep::find(BoxInput& input, const FilterInput& filters, PairList& pairs, FindCounts& counts) {
+    const View<const Aabb> boxes = input.on_host();
+    line_up(boxes);
+    fill_columns(boxes);
+    counts.invalid_boxes = boxes_ < boxes.size();
+
+    const std::size_t lists = (boxes_ + rows_at_once - 1) / rows_at_once;
+    found_.resize(lists);
+    for (Found& part : found_) {  // keeps the memory
+        part.pairs.clear();
+        part.filtered = part.unmoving = part.tests = 0;
+    }
+    for (std::size_t list = 0; list < lists; list += lists_at_once) {
+        if (options_.progress) options_.progress(static_cast<double>(list) / static_cast<double>(lists));
+        parallel_for(std::min(lists_at_once, lists - list), boxes_ > serial_rows, [&](std::size_t k) {
+            const std::size_t first = (list + k) * rows_at_once;
+            test_rows(first, std::min(boxes_, first + rows_at_once), filters, found_[list + k]);
+        });
+    }
+    deliver(pairs, counts);
+}
+
+}  // namespace
+
+std::unique_ptr<BroadPhaseAlgorithm> make_host_sweep(Device*, const BroadPhaseOptions& options) {
+    return std::make_unique<HostSweep>(options);
+}
+
+}  // namespace clinch::detail
