@@ -181,10 +181,10 @@ Aabb BoxGenerator::on_floor() {
 Aabb BoxGenerator::in_grid(std::uint64_t i) const {
     const auto edge = static_cast<std::uint64_t>(edge_);
     const std::uint64_t cell = (first_cell_ + i % count_ * stride_) % count_;
-    return box(
-        {origin_.x + static_cast<double>(cell % edge) + 0.5, origin_.y + static_cast<double>(cell / edge % edge) + 0.5,
-         origin_.z + static_cast<double>(cell / edge / edge) + 0.5},
-        1.0);
+    const std::uint64_t column = cell % edge, row = cell / edge % edge, layer = cell / edge / edge;
+    return box({origin_.x + static_cast<double>(column) + 0.5, origin_.y + static_cast<double>(row) + 0.5,
+                origin_.z + static_cast<double>(layer) + 0.5},
+               1.0);
 }
 
 Aabb BoxGenerator::of_surface(std::uint64_t i) const {

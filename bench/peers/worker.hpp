@@ -1,0 +1,63 @@
+// A process that holds one peer: libraries that crash, hang or leave threads behind do so there.
+#pragma once
+
+#include <sys/types.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/peers/peer.hpp"
+
+namespace clinch::peers {
+
+/// What a worker says of one job.
+struct Answer {
+    static constexpr unsigned most_runs = 32;
+    bool done = false;
+    unsigned runs = 0;
+    std::array<double, most_runs> ms{};  ///< of each run
+    std::uint64_t pairs = 0;             ///< of the first scene, at the first job
+    std::uint64_t mark =
+        0;  ///< of both scenes, at the first job: a sum over the pairs that does not depend on their order
+    std::uint64_t peak_bytes = 0;  ///< of the process
+    std::array<char, 240> text{};  ///< why not done
+};
+
+/// Two scenes that take turns, so that nothing found out in one run is of use in the next; the first is the one
+/// reported.
+using Scenes = std::array<std::vector<Aabb>, 2>;
+
+/// Runs a peer in a child process. The process that makes it must not have used OpenCL or OpenMP: those
+/// do not survive a fork. POSIX calls that fail are std::system_error.
+class Worker {
+public:
+    /// `row`, `scenes` and `setup` are read by the child; the caller's may go.
+    Worker(const PeerRow& row, const Scenes& scenes, const Setup& setup);
+    /// Ends the child at once.
+    ~Worker();
+    Worker(const Worker&) = delete;
+    Worker& operator=(const Worker&) = delete;
+
+    /// Makes the peer and runs it on both scenes, untouched memory and all; takes the mark.
+    Answer first_run(double most_seconds) { return ask('f', 0.0, most_seconds); }
+    /// Runs until `enough_ms` are over, at least once; of several runs the first is not counted. Another number of
+    /// pairs than at first is a failure.
+    Answer more_runs(double enough_ms, double most_seconds) { return ask('m', enough_ms, most_seconds); }
+
+private:
+    struct Command {
+        char job;
+        double enough_ms;
+    };
+    Answer ask(char job, double enough_ms, double most_seconds);
+    std::string end_of_child();
+    [[noreturn]] static void serve(const PeerRow& row, const Scenes& scenes, const Setup& setup, int commands,
+                                   int answers);
+
+    pid_t child_ = -1;
+    int commands_ = -1, answers_ = -1;
+};
+
+}  // namespace clinch::peers
