@@ -31,6 +31,8 @@ struct BroadPhaseOptions {
     /// Device memory for work in between (bit buffers); larger means fewer passes. Pairs wait in up to
     /// four times as much. At least what one row of boxes needs is taken.
     std::size_t scratch_bytes = std::size_t{64} << 20;
+    /// Room for the pairs that stream() hands over at a time, on the device and on the host.
+    std::size_t stream_bytes = std::size_t{64} << 20;
     /// Called now and then during long work with the share done, 0 to 1; may throw to stop the work.
     std::function<void(double)> progress;
     /// Wait for the device after each stage, so that StageTimes are those of the stages (costs a
@@ -64,6 +66,17 @@ public:
     /// none and are listed in report().rejected. The result is readable host memory, valid until the
     /// next call or the end of this object. Throws Error; then there is no result.
     View<const Pair> find(View<const Aabb> boxes, const FilterColumns& filters = {});
+
+    /// The pairs that find() would list, handed to `take` piece by piece: every pair once, at most stream_bytes of
+    /// them at a time (8 bytes a pair), so that memory does not grow with the result. A piece is valid during
+    /// the call of `take`; with Order::Sorted the pairs of a piece ascend, but not from piece to piece.
+    /// Returns the number of pairs. When there are more pairs than a piece holds, boxes are searched about twice: once
+    /// to count. More than max_pairs is LimitExceeded, maybe after some pieces. What `take` throws ends the call.
+    std::uint64_t stream(View<const Aabb> boxes, const std::function<void(View<const Pair>)>& take,
+                         const FilterColumns& filters = {});
+
+    /// The number of pairs that find() would list; no pair is stored.
+    std::uint64_t count(View<const Aabb> boxes, const FilterColumns& filters = {});
 
     /// Counts and times of the last call that returned.
     const Report& report() const noexcept;

@@ -67,8 +67,14 @@ detail::Device& BroadPhase::Impl::device() const {
 
 View<const Pair> BroadPhase::Impl::find(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
                                         const detail::FilterInput& filters, bool list_rejected) {
-    const detail::Stopwatch total;
     pairs.clear();
+    run(row, boxes, filters, list_rejected);
+    return pairs.view();
+}
+
+void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
+                           bool list_rejected) {
+    const detail::Stopwatch total;
     report = Report{};
     if (row.needs_device && !detail::runs_on(row, context.infos[context.primary()]))
         throw Error(ErrorCode::DeviceFailed, std::string("the algorithm '") + row.name + "' cannot run on '" +
@@ -91,7 +97,7 @@ View<const Pair> BroadPhase::Impl::find(const detail::AlgorithmRow& row, detail:
     report.ms.broad = broad.ms() - counts.download_ms;
     if (counts.invalid_boxes && list_rejected) report.rejected = rejected_boxes(boxes.on_host());
     report.bodies = boxes.count();
-    report.pairs = pairs.view().size();
+    report.pairs = pairs.size();
     report.box_tests = counts.box_tests;
     report.algorithm = row.name;
     report.skipped.pairs_filtered = counts.pairs_filtered;
@@ -99,7 +105,6 @@ View<const Pair> BroadPhase::Impl::find(const detail::AlgorithmRow& row, detail:
     for (const auto& opened : context.devices)
         if (opened != nullptr) report.peak_device_bytes += opened->report().peak_bytes;
     report.ms.total = total.ms();
-    return pairs.view();
 }
 
 BroadPhase::BroadPhase(Context& context, BroadPhaseOptions options)
@@ -112,6 +117,26 @@ View<const Pair> BroadPhase::find(View<const Aabb> boxes, const FilterColumns& f
     check_count(boxes.size());
     detail::BoxInput input(boxes, impl_->staging);
     return impl_->find(impl_->choose(boxes.size()), input, {filters, 0}, true);
+}
+
+std::uint64_t BroadPhase::stream(View<const Aabb> boxes, const std::function<void(View<const Pair>)>& take,
+                                 const FilterColumns& filters) {
+    check_count(boxes.size());
+    if (!take) throw Error(ErrorCode::InvalidArgument, "there is no function to take the pairs of a stream");
+    detail::BoxInput input(boxes, impl_->staging);
+    impl_->pairs.clear();
+    impl_->pairs.stream_to(take, impl_->options.stream_bytes / sizeof(Pair));
+    impl_->run(impl_->choose(boxes.size()), input, {filters, 0}, true);
+    return impl_->report.pairs;
+}
+
+std::uint64_t BroadPhase::count(View<const Aabb> boxes, const FilterColumns& filters) {
+    check_count(boxes.size());
+    detail::BoxInput input(boxes, impl_->staging);
+    impl_->pairs.clear();
+    impl_->pairs.count_only();
+    impl_->run(impl_->choose(boxes.size()), input, {filters, 0}, true);
+    return impl_->report.pairs;
 }
 
 const Report& BroadPhase::report() const noexcept {

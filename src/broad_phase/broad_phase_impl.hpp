@@ -26,6 +26,9 @@ struct BroadPhase::Impl {
     /// Finds the pairs of `boxes` with `row`; boxes that are no boxes are listed if `list_rejected`.
     View<const Pair> find(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
                           bool list_rejected);
+    /// The same into `pairs` as it is set up.
+    void run(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
+             bool list_rejected);
 };
 
 }  // namespace clinch

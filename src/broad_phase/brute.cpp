@@ -103,9 +103,11 @@ void Brute::fill_entries(const Batch& batch, std::uint32_t first, std::uint32_t 
 }
 
 void Brute::fill(const Batch& batch, std::uint32_t found, bool only_one, PairList& pairs, FindCounts& counts) {
-    if (found == 0) return;
+    if (pairs.counts_only()) pairs.add_count(found);
+    if (found == 0 || pairs.counts_only()) return;
     // Pairs of one launch: at least a whole entry.
-    const std::uint64_t wanted = std::max<std::uint64_t>(4 * options_.scratch_bytes / sizeof(Pair), block);
+    const std::uint64_t wanted = std::max<std::uint64_t>(
+        std::min<std::uint64_t>(4 * options_.scratch_bytes / sizeof(Pair), pairs.piece()), block);
     const auto most = static_cast<std::uint32_t>(std::min({wanted, device_.info().max_allocation / sizeof(Pair),
                                                            std::uint64_t{std::numeric_limits<std::uint32_t>::max()}}));
     if (found <= most) {

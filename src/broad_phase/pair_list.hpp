@@ -1,8 +1,11 @@
-// The pairs of one call, readable on the host.
+// Where the pairs of one call go: into a list, to the caller piece by piece, or only into their count.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -12,28 +15,61 @@
 
 namespace clinch::detail {
 
-/// Pairs in host memory of its own, or in device memory that is mapped: then nothing was copied.
+/// Pairs in host memory of its own, or in device memory that is mapped: then nothing was copied. Or, for a call that
+/// streams or counts, none of them.
 class PairList {
 public:
+    using Taker = std::function<void(View<const Pair>)>;
+
     void clear() {
         mapping_.release();
         host_.clear();
         size_ = 0;
+        counts_only_ = false;
+        take_ = nullptr;
+        piece_ = unlimited;
     }
+    /// From here to the next clear(): pairs are counted, not kept.
+    void count_only() { counts_only_ = true; }
+    bool counts_only() const noexcept { return counts_only_; }
+    /// From here to the next clear(): pairs go to `take`, which may throw, at most `piece` at a time.
+    void stream_to(const Taker& take, std::size_t piece) {
+        take_ = &take;
+        piece_ = std::max<std::size_t>(piece, 1);
+    }
+    /// Pairs an algorithm should hold at once, at most.
+    std::size_t piece() const noexcept { return piece_; }
+
+    /// Pairs so far.
+    std::uint64_t size() const noexcept { return size_; }
     /// Adds pairs behind those there are.
     void append(const Pair* pairs, std::size_t count) {
-        host_.insert(host_.end(), pairs, pairs + count);
-        size_ = host_.size();
+        size_ += count;
+        if (counts_only_) return;
+        if (take_ == nullptr) {
+            host_.insert(host_.end(), pairs, pairs + count);
+            return;
+        }
+        for (std::size_t first = 0; first < count; first += piece_)
+            (*take_)({pairs + first, std::min(piece_, count - first)});
     }
     void append(const std::vector<Pair>& pairs) { append(pairs.data(), pairs.size()); }
+    /// Adds to the count of a list that only counts.
+    void add_count(std::uint64_t pairs) { size_ += pairs; }
     /// The whole list is `count` pairs in a mapped buffer that outlives this list's next clear().
     void adopt(Mapping mapping, std::size_t count) {
+        if (counts_only_ || take_ != nullptr) {
+            append(mapping.as<Pair>(), count);
+            return;
+        }
         clear();
         mapping_ = std::move(mapping);
         size_ = count;
     }
-    /// Sorts a list of the host that was put together from sorted runs, which end at `ends`.
+    /// Sorts a list of the host that was put together from sorted runs, which end at `ends`. Pieces of a stream stay
+    /// sorted each for itself.
     void merge_runs(std::vector<std::size_t> ends) {
+        if (counts_only_ || take_ != nullptr) return;
         const auto at = [&](std::size_t i) { return host_.begin() + static_cast<std::ptrdiff_t>(i); };
         while (ends.size() > 1) {  // neighbours in pairs
             std::vector<std::size_t> merged;
@@ -45,15 +81,23 @@ public:
             ends = std::move(merged);
         }
     }
+    /// The list; empty when pairs were streamed or counted.
     View<const Pair> view() const noexcept {
+        if (counts_only_ || take_ != nullptr) return {};
         const Pair* mapped = mapping_.as<Pair>();
-        return {mapped != nullptr ? mapped : host_.data(), size_};
+        return {mapped != nullptr ? mapped : host_.data(), static_cast<std::size_t>(size_)};
     }
+    /// Host memory of its own.
+    std::size_t host_bytes() const noexcept { return host_.capacity() * sizeof(Pair); }
 
 private:
+    static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
     std::vector<Pair> host_;
     Mapping mapping_;
-    std::size_t size_ = 0;
+    std::uint64_t size_ = 0;
+    bool counts_only_ = false;
+    const Taker* take_ = nullptr;
+    std::size_t piece_ = unlimited;
 };
 
 }  // namespace clinch::detail

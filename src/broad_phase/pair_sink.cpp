@@ -72,6 +72,7 @@ std::vector<Move> moves_into_gaps(std::vector<PartialChunk> tails, std::uint64_t
 PairSink::PairSink(Device& device, const BroadPhaseOptions& options)
     : device_(device), options_(options), filters_(device), sort_(device) {}
 
+// Pairs that one buffer can hold.
 std::uint64_t PairSink::most_pairs() const {
     return std::min<std::uint64_t>(device_.info().max_allocation / sizeof(Pair), 0xf0000000u);
 }
@@ -90,16 +91,15 @@ std::size_t PairSink::workers_of(const std::vector<Part>& parts) const {
     return items;
 }
 
-// Room for `pairs` pairs that `all_workers` work-items put out.
-void PairSink::plan(std::uint64_t pairs, std::uint64_t all_workers) {
+// Room for `pairs` pairs that `all_workers` work-items put out, as far as `most` pairs go; with none they are counted.
+void PairSink::plan(std::uint64_t pairs, std::uint64_t all_workers, std::uint64_t most) {
     chunk_size_ = 16;
     while (chunk_size_ < 4096 && std::uint64_t{chunk_size_} * all_workers * 16 < pairs) chunk_size_ *= 2;
     const std::uint64_t chunks =
-        std::min(pairs / chunk_size_ + all_workers + 1, std::max<std::uint64_t>(most_pairs() / chunk_size_, 1));
-    capacity_ = static_cast<std::uint32_t>(chunks);
+        std::min(pairs / chunk_size_ + all_workers + 1, std::max<std::uint64_t>(most / chunk_size_, 1));
     device_.reserve(pairs_, chunks * chunk_size_ * sizeof(Pair), "pairs");
-    capacity_ =
-        static_cast<std::uint32_t>(std::min<std::uint64_t>(pairs_.bytes() / sizeof(Pair) / chunk_size_, 0xfffffff0u));
+    const std::uint64_t room = most == 0 ? 0 : pairs_.bytes() / sizeof(Pair) / chunk_size_;
+    capacity_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(room, 0xfffffff0u));
 }
 
 // Enqueues all parts.
@@ -183,18 +183,25 @@ void PairSink::collect(const std::vector<SinkLaunch>& launches, const FilterInpu
         if (launch.tasks > 0) parts.push_back({&launch, 0, launch.tasks});
     if (parts.empty()) return;
     const std::uint64_t all_workers = workers_of(parts);
-    plan(std::max<std::uint64_t>(expected_ + expected_ / 8, bodies), all_workers);
+    // A stream needs no more room than a piece of it.
+    const std::uint64_t most = pairs.counts_only() ? 0 : std::min<std::uint64_t>(most_pairs(), pairs.piece());
+    plan(std::max<std::uint64_t>(expected_ + expected_ / 8, bodies), all_workers, most);
     Outcome outcome = run(parts, filters, bodies);
     expected_ = outcome.pairs;
     check_limit(outcome.pairs, options_);
-    if (!outcome.fits) {
-        plan(outcome.pairs + outcome.pairs / 64, all_workers);
-        if (outcome.pairs + chunk_size_ * all_workers <= most_pairs()) outcome = run(parts, filters, bodies);
+    if (pairs.counts_only()) {
+        add(outcome, counts);
+        pairs.add_count(outcome.pairs);
+        return;
     }
     if (!outcome.fits) {
-        std::uint64_t total = 0;
+        plan(outcome.pairs + outcome.pairs / 64, all_workers, most);
+        if (outcome.pairs + chunk_size_ * all_workers <= most) outcome = run(parts, filters, bodies);
+    }
+    if (!outcome.fits) {
         std::vector<std::size_t> ends;
-        for (const Part& part : parts) collect_in_parts({part}, filters, bodies, pairs, counts, total, ends);
+        const Collection to{filters, bodies, pairs, counts, ends, most};
+        for (const Part& part : parts) collect_pieces(part, outcome.pairs, to);
         if (options_.order == Order::Sorted) pairs.merge_runs(ends);
         return;
     }
@@ -203,27 +210,36 @@ void PairSink::collect(const std::vector<SinkLaunch>& launches, const FilterInpu
     deliver(outcome, bodies, true, pairs, counts);
 }
 
-// Halves the tasks until their pairs fit, and takes each piece to the host.
-void PairSink::collect_in_parts(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies,
-                                PairList& pairs, FindCounts& counts, std::uint64_t& total,
-                                std::vector<std::size_t>& sorted_ends) {
-    const Part part = parts[0];
-    const Outcome outcome = run(parts, filters, bodies);
-    if (!outcome.fits) {
-        if (part.end - part.first == 1)
+// The tasks of a part in pieces whose pairs fit, if there are `expected` pairs in it.
+void PairSink::collect_pieces(const Part& part, std::uint64_t expected, const Collection& to) {
+    const std::uint64_t tasks = part.end - part.first;
+    const std::uint64_t pieces = std::clamp<std::uint64_t>(expected / std::max<std::uint64_t>(to.most, 1) * 5 / 4 + 2,
+                                                           std::min<std::uint64_t>(tasks, 2), tasks);
+    for (std::uint64_t p = 0; p < pieces; ++p)
+        collect_piece({part.launch, part.first + static_cast<std::uint32_t>(tasks * p / pieces),
+                       part.first + static_cast<std::uint32_t>(tasks * (p + 1) / pieces)},
+                      to);
+}
+
+// Takes the pairs of some tasks to the host; cuts the tasks further when the pairs do not fit.
+void PairSink::collect_piece(const Part& part, const Collection& to) {
+    Outcome outcome = run({part}, to.filters, to.bodies);
+    if (!outcome.fits && part.end - part.first > 1) {
+        collect_pieces(part, outcome.pairs, to);
+        return;
+    }
+    if (!outcome.fits) {  // one task: it needs what it needs
+        plan(outcome.pairs, workers_of({part}), most_pairs());
+        outcome = run({part}, to.filters, to.bodies);
+        if (!outcome.fits)
             throw Error(ErrorCode::OutOfMemory, std::to_string(outcome.pairs) +
                                                     " pairs of one task do not fit in one buffer of '" +
                                                     device_.info().name + "'");
-        const std::uint32_t middle = part.first + (part.end - part.first) / 2;
-        collect_in_parts({{part.launch, part.first, middle}}, filters, bodies, pairs, counts, total, sorted_ends);
-        collect_in_parts({{part.launch, middle, part.end}}, filters, bodies, pairs, counts, total, sorted_ends);
-        return;
     }
-    add(outcome, counts);
-    total += outcome.pairs;
+    add(outcome, to.counts);
     if (outcome.pairs == 0) return;
-    deliver(outcome, bodies, false, pairs, counts);
-    sorted_ends.push_back(total);
+    deliver(outcome, to.bodies, false, to.pairs, to.counts);
+    to.sorted_ends.push_back(static_cast<std::size_t>(to.pairs.size()));
 }
 
 }  // namespace clinch::detail

@@ -29,8 +29,8 @@ struct PartialChunk {
 };
 
 /// Output of any size: the room is guessed from the last call; when it was short, the exact count is known
-/// and the kernels run once more; when one buffer cannot hold it, the tasks are cut into parts whose
-/// pairs are joined on the host. Never a lost pair.
+/// and the kernels run once more; when one buffer cannot hold it, or a stream wants less at a time, the tasks
+/// are cut into pieces whose pairs go to the host one after the other. Never a lost pair.
 class PairSink {
 public:
     PairSink(Device& device, const BroadPhaseOptions& options);
@@ -55,17 +55,25 @@ private:
         const SinkLaunch* launch;
         std::uint32_t first, end;
     };
+    // What is collected in pieces: where it goes, and the pairs one piece may have.
+    struct Collection {
+        const FilterInput& filters;
+        std::uint32_t bodies;
+        PairList& pairs;
+        FindCounts& counts;
+        std::vector<std::size_t>& sorted_ends;
+        std::uint64_t most;
+    };
     std::size_t groups_of(const Part& part) const;
     std::size_t workers_of(const std::vector<Part>& parts) const;
-    void plan(std::uint64_t pairs, std::uint64_t all_workers);
+    void plan(std::uint64_t pairs, std::uint64_t all_workers, std::uint64_t most);
     Outcome run(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies);
     void launch(const std::vector<Part>& parts, cl_mem filters);
     Outcome read_outcome(std::size_t header, std::size_t tails);
     void close_gaps(const Outcome& outcome);
     void deliver(const Outcome& outcome, std::uint32_t bodies, bool alone, PairList& pairs, FindCounts& counts);
-    void collect_in_parts(const std::vector<Part>& parts, const FilterInput& filters, std::uint32_t bodies,
-                          PairList& pairs, FindCounts& counts, std::uint64_t& total,
-                          std::vector<std::size_t>& sorted_ends);
+    void collect_pieces(const Part& part, std::uint64_t expected, const Collection& to);
+    void collect_piece(const Part& part, const Collection& to);
     static void add(const Outcome& outcome, FindCounts& counts);
     std::uint64_t most_pairs() const;
 
