@@ -17,6 +17,7 @@
 // Any work-group size. Defines: LANES, FILTERS (0)
 #include "common/lanes.clh"
 #include "common/box.clh"
+#include "common/ordered.clh"
 #include "broad_phase/pair_sink.clh"
 
 kernel void sweep_statistics(global const float* restrict boxes, ulong first, uint n, uint per_run, uint runs,
@@ -50,12 +51,6 @@ kernel void sweep_statistics(global const float* restrict boxes, ulong first, ui
         record[10 + d] = as_uint(low[d]);
         record[13 + d] = as_uint(high[d]);
     }
-}
-
-// Grows with the float: negative ones have all bits turned over, others the sign.
-inline uint ordered(float x) {
-    uint bits = as_uint(x);
-    return bits ^ ((bits >> 31) != 0 ? 0xffffffffu : 0x80000000u);
 }
 
 kernel void sweep_keys(global const float* restrict boxes, ulong first, uint n, uint axis, global uint* restrict keys) {

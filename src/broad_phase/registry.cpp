@@ -12,6 +12,7 @@ std::unique_ptr<BroadPhaseAlgorithm> make_grid(Device* device, const BroadPhaseO
 std::unique_ptr<BroadPhaseAlgorithm> make_host_brute(Device* device, const BroadPhaseOptions& options);
 std::unique_ptr<BroadPhaseAlgorithm> make_host_sweep(Device* device, const BroadPhaseOptions& options);
 std::unique_ptr<BroadPhaseAlgorithm> make_sweep(Device* device, const BroadPhaseOptions& options);
+std::unique_ptr<BroadPhaseAlgorithm> make_sweep3(Device* device, const BroadPhaseOptions& options);
 
 namespace {
 
@@ -22,6 +23,7 @@ const AlgorithmRow rows[] = {
     {"host-brute", false, false, make_host_brute},
     {"host-sweep", false, false, make_host_sweep},
     {"sweep", true, false, make_sweep},
+    {"sweep3", true, false, make_sweep3},
 };
 
 // Up to here the host is done before a device has started: launching and waiting cost about as much as
