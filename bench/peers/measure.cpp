@@ -26,15 +26,19 @@ void rest() {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
 }
 
+/// Whether the peer goes on; if not, the note says why.
+bool goes_on(Runner& runner, const Answer& answer) {
+    rest();
+    if (answer.done) return true;
+    runner.result.note = answer.text.data();
+    runner.worker.reset();
+    return false;
+}
+
 bool first_run(Runner& runner, const Scenes& scenes, const Setup& setup, const Rules& rules) {
     runner.worker = std::make_unique<Worker>(runner.result.row, scenes, setup);
     const Answer answer = runner.worker->first_run(2.0 * rules.most_seconds);
-    rest();
-    if (!answer.done) {
-        runner.result.note = answer.text.data();
-        runner.worker.reset();
-        return false;
-    }
+    if (!goes_on(runner, answer)) return false;
     runner.result.pairs = answer.pairs;
     runner.result.mark = answer.mark;
     runner.result.peak_bytes = answer.peak_bytes;
@@ -42,14 +46,14 @@ bool first_run(Runner& runner, const Scenes& scenes, const Setup& setup, const R
     return true;
 }
 
+bool warm_up(Runner& runner, const Scenes& scenes, const Setup& setup, const Rules& rules) {
+    runner.worker = std::make_unique<Worker>(runner.result.row, scenes, setup);
+    return goes_on(runner, runner.worker->warm_up(runner.result.pairs, rules.most_seconds));
+}
+
 void next_run(Runner& runner, const Rules& rules) {
     const Answer answer = runner.worker->more_runs(rules.enough_ms, rules.most_seconds);
-    rest();
-    if (!answer.done) {
-        runner.result.note = answer.text.data();
-        runner.worker.reset();
-        return;
-    }
+    if (!goes_on(runner, answer)) return;
     Result& result = runner.result;
     result.ms.insert(result.ms.end(), answer.ms.begin(), answer.ms.begin() + answer.runs);
     result.peak_bytes = std::max(result.peak_bytes, answer.peak_bytes);
@@ -102,9 +106,7 @@ Outcome measure(const SceneName& scene, const std::vector<PeerRow>& rows, const 
     for (unsigned round = 0; round < rules.rounds; ++round)
         for (Runner& runner : runners) {
             if (round >= runner.rounds || !runner.result.note.empty()) continue;
-            const std::uint64_t mark = runner.result.mark;
-            if (!runner.worker && !first_run(runner, scenes, {rules.threads, outcome.pairs}, rules)) continue;
-            runner.result.right = runner.result.right && runner.result.mark == mark;
+            if (!runner.worker && !warm_up(runner, scenes, {rules.threads, outcome.pairs}, rules)) continue;
             next_run(runner, rules);
             if (!together) runner.worker.reset();
         }

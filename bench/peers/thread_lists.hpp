@@ -18,7 +18,7 @@ public:
     /// The calling thread's list.
     std::vector<Pair>& mine() {
         const int index = tbb::this_task_arena::current_thread_index();  // -1: no thread of an arena
-        return lists_.at(static_cast<std::size_t>(index + 1)).pairs;
+        return lists_.at(static_cast<std::size_t>(index) + 1).pairs;
     }
     /// Empties the lists, keeps their memory.
     void clear() {

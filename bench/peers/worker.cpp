@@ -98,6 +98,15 @@ public:
         return done(answer);
     }
 
+    Answer warm_up(std::uint64_t pairs) {
+        Answer answer;
+        answer.ms[0] = timed(1);
+        answer.runs = 1;
+        pairs_ = {pairs, count(lists_)};
+        next_ = 1;
+        return done(answer);
+    }
+
     Answer more(double enough_ms) {
         Answer answer;
         double sum = 0.0;
@@ -157,7 +166,9 @@ void Worker::serve(const PeerRow& row, const Scenes& scenes, const Setup& setup,
         Answer answer;
         try {
             if (!runner) runner = std::make_unique<Runner>(row, scenes, setup);
-            answer = command.job == 'f' ? runner->first() : runner->more(command.enough_ms);
+            answer = command.job == 'f'   ? runner->first()
+                     : command.job == 'w' ? runner->warm_up(command.pairs)
+                                          : runner->more(command.enough_ms);
         } catch (const std::exception& error) {
             set_text(answer, error.what());
         }
@@ -210,13 +221,12 @@ std::string Worker::end_of_child() {
     return "ended with status " + std::to_string(WEXITSTATUS(status));
 }
 
-Answer Worker::ask(char job, double enough_ms, double most_seconds) {
+Answer Worker::ask(const Command& command, double most_seconds) {
     Answer answer;
     if (child_ <= 0) {
         set_text(answer, "has ended");
         return answer;
     }
-    const Command command{job, enough_ms};
     pollfd ready{answers_, POLLIN, 0};
     int seen = 1;
     if (write_all(commands_, &command, sizeof command))

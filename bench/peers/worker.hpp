@@ -32,6 +32,12 @@ using Scenes = std::array<std::vector<Aabb>, 2>;
 /// Runs a peer in a child process. The process that makes it must not have used OpenCL or OpenMP: those
 /// do not survive a fork. POSIX calls that fail are std::system_error.
 class Worker {
+    struct Command {
+        char job;
+        double enough_ms;
+        std::uint64_t pairs;
+    };
+
 public:
     /// `row`, `scenes` and `setup` are read by the child; the caller's may go.
     Worker(const PeerRow& row, const Scenes& scenes, const Setup& setup);
@@ -41,17 +47,16 @@ public:
     Worker& operator=(const Worker&) = delete;
 
     /// Makes the peer and runs it on both scenes, untouched memory and all; takes the mark.
-    Answer first_run(double most_seconds) { return ask('f', 0.0, most_seconds); }
+    Answer first_run(double most_seconds) { return ask({'f', 0.0, 0}, most_seconds); }
+    /// The same on the second scene alone, in a worker made anew for a peer that found `pairs` in the first scene
+    /// before.
+    Answer warm_up(std::uint64_t pairs, double most_seconds) { return ask({'w', 0.0, pairs}, most_seconds); }
     /// Runs until `enough_ms` are over, at least once; of several runs the first is not counted. Another number of
     /// pairs than at first is a failure.
-    Answer more_runs(double enough_ms, double most_seconds) { return ask('m', enough_ms, most_seconds); }
+    Answer more_runs(double enough_ms, double most_seconds) { return ask({'m', enough_ms, 0}, most_seconds); }
 
 private:
-    struct Command {
-        char job;
-        double enough_ms;
-    };
-    Answer ask(char job, double enough_ms, double most_seconds);
+    Answer ask(const Command& command, double most_seconds);
     std::string end_of_child();
     [[noreturn]] static void serve(const PeerRow& row, const Scenes& scenes, const Setup& setup, int commands,
                                    int answers);
