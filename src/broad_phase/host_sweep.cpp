@@ -49,8 +49,10 @@ std::size_t axis_of_variance(View<const Aabb> boxes) {
 
 // What one run of rows found.
 struct Found {
-    std::vector<Pair> pairs;
+    std::vector<Pair> pairs;   // none of them where only their count is asked for
+    std::uint64_t passed = 0;  // pairs
     std::uint64_t filtered = 0, unmoving = 0, tests = 0;
+    bool keeps = true;
 };
 
 // In the order of the axis: min and max on it, on the next one, and on the one after that.
@@ -170,12 +172,14 @@ void HostSweep::fill_columns(View<const Aabb> boxes) {
 }
 
 void HostSweep::put(std::uint32_t a, std::uint32_t b, const FilterInput& filters, Found& found) const {
-    if (!filters.allows(a, b))
+    if (!filters.allows(a, b)) {
         ++found.filtered;
-    else if (!filters.can_move(a) && !filters.can_move(b))
+    } else if (!filters.can_move(a) && !filters.can_move(b)) {
         ++found.unmoving;
-    else
-        found.pairs.push_back({std::min(a, b), std::max(a, b)});
+    } else {
+        ++found.passed;
+        if (found.keeps) found.pairs.push_back({std::min(a, b), std::max(a, b)});
+    }
 }
 
 // Rows [first, end) of the order against those behind them that begin before they end.
@@ -215,7 +219,7 @@ std::vector<Pair> HostSweep::joined_by_rows(std::uint64_t total) const {
 void HostSweep::deliver(PairList& pairs, FindCounts& counts) {
     std::uint64_t total = 0, tests = 0;
     for (const Found& part : found_) {
-        total += part.pairs.size();
+        total += part.passed;
         tests += part.tests;
         counts.pairs_filtered += part.filtered;
         counts.static_pairs += part.unmoving;
@@ -224,6 +228,10 @@ void HostSweep::deliver(PairList& pairs, FindCounts& counts) {
     if (choose_axis_) tests_at_first_ = tests;
     choose_axis_ = tests / 2 > tests_at_first_ + tests_borne * boxes_;
     check_limit(total, options_);
+    if (pairs.counts_only()) {
+        pairs.add_count(total);
+        return;
+    }
     if (options_.order == Order::Sorted && total > order_.size() / 16) {
         const std::vector<Pair> all = joined_by_rows(total);
         if (total > pairs_kept) found_.clear();
@@ -252,7 +260,8 @@ void HostSweep::find(BoxInput& input, const FilterInput& filters, PairList& pair
     found_.resize(lists);
     for (Found& part : found_) {  // keeps the memory
         part.pairs.clear();
-        part.filtered = part.unmoving = part.tests = 0;
+        part.passed = part.filtered = part.unmoving = part.tests = 0;
+        part.keeps = !pairs.counts_only();
     }
     for (std::size_t list = 0; list < lists; list += lists_at_once) {
         if (options_.progress) options_.progress(static_cast<double>(list) / static_cast<double>(lists));

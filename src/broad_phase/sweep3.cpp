@@ -275,7 +275,8 @@ void Sweep3::find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, 
         counts.box_tests += mark_common(batch);
         const std::uint32_t kept = keep_allowed(batch, filters, counts);
         total += kept;
-        if (kept == 0 || total > options_.max_pairs) continue;  // counts on, for the error below
+        if (pairs.counts_only()) pairs.add_count(kept);
+        if (kept == 0 || pairs.counts_only() || total > options_.max_pairs) continue;  // counts on, for the error below
         Mapping mapping = pairs_of(batch, kept, counts);
         if (batch.end - batch.first == n_)
             pairs.adopt(std::move(mapping), kept);
