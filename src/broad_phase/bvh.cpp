@@ -1,4 +1,4 @@
-// bvh: boxes in Morton order with a wide tree above them, refitted from call to call. See cl/broad_phase/bvh.cl.
+// bvh: boxes along a Hilbert curve with a wide tree above them, refitted from call to call. See cl/broad_phase/bvh.cl.
 #include <limits>
 #include <string>
 
@@ -31,10 +31,10 @@ private:
 std::uint32_t Bvh::window() const {
     const std::uint32_t most = most_loop_iterations(device_.info());
     if (most == std::numeric_limits<std::uint32_t>::max()) return 0;
-    // Turns that two blocks take at most: each box of one against the other and each pair put out; twice that to be
-    // safe.
-    const std::uint32_t steps = tree_.width() / device_.info().lanes;
-    return most / 2 / (2 * steps + 4 + tree_.width() * (1 + steps + tree_.width()));
+    // Turns that one more block costs at most: taken up lane by lane, each of its boxes against each box of the
+    // other block, each pair put out. Half the turns are left for the way through the tree and for the last candidates.
+    const std::uint32_t lanes = device_.info().lanes, steps = tree_.width() / lanes;
+    return most / 2 / (steps * (7 * lanes + 1 + tree_.width() * (2 * lanes + 5)));
 }
 
 SinkLaunch Bvh::search(const FilterInput& filters) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 namespace clinch::detail {
@@ -51,7 +52,7 @@ float median_width(const BoxStatistics& stats) {
     return 0.0f;
 }
 
-// Bits an axis that the Morton code needs: cells as small as the boxes and as the room that each box has.
+// Bits an axis that places on the curve need: cells as small as the boxes and as the room that each box has.
 unsigned axis_bits(const BoxStatistics& stats, const double* extent, double widest, float median) {
     const double room = std::cbrt(extent[0] * extent[1] * extent[2] / stats.boxes);
     double cell = median > 0.0f ? static_cast<double>(median) : widest;
@@ -92,13 +93,13 @@ void BvhTree::shape(std::uint32_t n) {
     device_.reserve(levels_, sizeof levels, "the levels of a tree");
     device_.write(levels_, &levels, sizeof levels);
     device_.reserve(tree_, (std::size_t{first} + 1) * width_ * 6 * sizeof(float), "a tree of boxes");
-    device_.reserve(order_, n * sizeof(std::uint32_t), "the order of boxes");
+    device_.reserve(order_, std::size_t{blocks_} * width_ * sizeof(std::uint32_t), "the order of boxes");
     device_.reserve(measures_, level_first_.size() * items_for(blocks_ + width_) * sizeof(BvhMeasure),
                     "the measures of a tree");
 }
 
-// Chooses the cells of the Morton code and the classes of size; returns the bits of a key.
-unsigned BvhTree::write_frame(const BoxStatistics& stats) {
+// Chooses the cells that the curve goes through and the classes of size; returns the bits of a key.
+unsigned BvhTree::write_frame(const BoxStatistics& stats, bool finest) {
     double extent[3], widest = 0.0;
     const float median = median_width(stats);
     for (std::size_t d = 0; d < 3; ++d) {
@@ -115,9 +116,10 @@ unsigned BvhTree::write_frame(const BoxStatistics& stats) {
             classes = static_cast<unsigned>(c) + 2;
     }
     const unsigned class_bits = bits_of(classes - 1);
+    const unsigned most = class_bits > 0 ? 20 : 21;
+    unsigned axis = finest ? most : axis_bits(stats, extent, widest, median);
     // A pass of the sort takes 8 bits: those that are paid for are used.
-    unsigned axis = stats.boxes > 0 ? axis_bits(stats, extent, widest, median) : 1;
-    axis = std::min(((class_bits + 3 * axis + 7) / 8 * 8 - class_bits) / 3, class_bits > 0 ? 20u : 21u);
+    axis = std::min(((class_bits + 3 * axis + 7) / 8 * 8 - class_bits) / 3, most);
     for (std::size_t d = 0; d < 3; ++d) frame.origin[d] = stats.low[d];
     const double cells = static_cast<double>(std::uint64_t{1} << axis);
     frame.scale = widest > 0.0 ? static_cast<float>(std::min(cells / widest, 1e30)) : 0.0f;
@@ -130,16 +132,50 @@ unsigned BvhTree::write_frame(const BoxStatistics& stats) {
     return 3 * axis + class_bits;
 }
 
-// Sorts the boxes.
-void BvhTree::build(BoxInput& boxes) {
+// Sorts the boxes along the curve; with `finest`, through the smallest cells there are.
+void BvhTree::sort(BoxInput& boxes, const BoxStatistics& stats, bool finest) {
     const std::uint32_t n = boxes.count();
-    const unsigned bits = write_frame(statistics_.gather(boxes));
-    const bool wide = bits > 32;
-    Kernel& keys = wide ? keys64_kernel_ : keys32_kernel_;
-    if (!keys) keys = device_.kernel("broad_phase/bvh", "bvh_keys", wide ? "-DKEY=ulong" : "");
-    device_.reserve(keys_, std::size_t{n} * (wide ? sizeof(std::uint64_t) : sizeof(std::uint32_t)), "Morton codes");
-    device_.launch_items(keys.args(boxes.on(device_), boxes.first(), n, frame_, keys_), n);
-    (wide ? sort64_ : sort32_).sort(keys_, order_, n, bits, true);
+    const unsigned bits = write_frame(stats, finest);
+    wide_keys_ = bits > 32;
+    KeyKernels& kernels = wide_keys_ ? kernels64_ : kernels32_;
+    const char* const defines = wide_keys_ ? "-DKEY=ulong" : "";
+    if (!kernels.keys) kernels.keys = device_.kernel("broad_phase/bvh", "bvh_keys", defines);
+    if (!kernels.crowded) kernels.crowded = device_.kernel("broad_phase/bvh", "bvh_crowded", defines);
+    device_.reserve(keys_, std::size_t{n} * (wide_keys_ ? sizeof(std::uint64_t) : sizeof(std::uint32_t)),
+                    "the keys of boxes");
+    device_.launch_items(kernels.keys.args(boxes.on(device_), boxes.first(), n, frame_, keys_),
+                         n / device_.info().lanes + 1);
+    (wide_keys_ ? sort64_ : sort32_).sort(keys_, order_, n, bits, true);
+}
+
+// Whether so many blocks lie in a single cell that searching them, each against each if they are all in the same, would
+// cost more than all others, which meet some sixteen each. Waits.
+bool BvhTree::crowded() {
+    const std::uint32_t whole_blocks = blocks_ - 1;
+    if (whole_blocks == 0) return false;
+    const std::uint32_t items = items_for(whole_blocks), per_item = (whole_blocks - 1) / items + 1;
+    const std::size_t group = device_.group_size();
+    device_.launch((wide_keys_ ? kernels64_ : kernels32_).crowded.args(keys_, whole_blocks, per_item, items, measures_),
+                   (items + group - 1) / group, group);
+    std::vector<std::uint32_t> counts(items);
+    device_.read(measures_, counts.data(), items * sizeof counts[0]);
+    const double count = std::accumulate(counts.begin(), counts.end(), 0.0);
+    return count * count > 16.0 * blocks_;
+}
+
+// Chooses cells and sorts the boxes. Cells are made from how wide and how many boxes are; where that proves too coarse,
+// as for a heap of sand among boulders, the finest are taken, and for some builds to come at once.
+void BvhTree::build(BoxInput& boxes) {
+    constexpr unsigned builds_with_finest = 16;
+    const BoxStatistics stats = statistics_.gather(boxes);
+    const bool finest = finest_builds_ > 0;
+    sort(boxes, stats, finest);
+    if (finest) {
+        --finest_builds_;
+    } else if (crowded()) {
+        finest_builds_ = builds_with_finest;
+        sort(boxes, stats, true);
+    }
 }
 
 // Computes all blocks of boxes and all nodes in the order there is. Returns the sum of the sizes of nodes. Waits.

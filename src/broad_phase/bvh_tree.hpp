@@ -15,8 +15,8 @@ namespace clinch::detail {
 struct BvhFrame;
 struct BvhLevels;
 
-/// An implicit tree of WIDTH-wide nodes over boxes in Morton order. Which order it has is a matter of speed alone: any
-/// search of it gives the same pairs.
+/// An implicit tree of WIDTH-wide nodes over boxes along a Hilbert curve. Which order it has is a matter of speed
+/// alone: any search of it gives the same pairs.
 class BvhTree {
 public:
     explicit BvhTree(Device& device);
@@ -45,7 +45,9 @@ public:
 private:
     void shape(std::uint32_t n);
     void build(BoxInput& boxes);
-    unsigned write_frame(const BoxStatistics& stats);
+    unsigned write_frame(const BoxStatistics& stats, bool finest);
+    void sort(BoxInput& boxes, const BoxStatistics& stats, bool finest);
+    bool crowded();
     double fit(BoxInput& boxes);
     std::uint32_t items_for(std::uint32_t nodes) const;
 
@@ -53,13 +55,19 @@ private:
     const std::uint32_t width_;
     StatisticsGatherer statistics_;
     RadixSort sort32_, sort64_;
-    Kernel keys32_kernel_, keys64_kernel_, leaves_kernel_, level_kernel_;
+    struct KeyKernels {
+        Kernel keys, crowded;
+    };
+    KeyKernels kernels32_, kernels64_;
+    Kernel leaves_kernel_, level_kernel_;
     Buffer frame_, levels_, keys_, order_, tree_, measures_;
     std::vector<std::uint32_t> level_first_;  // block where each level begins; the last is the number of blocks
     std::uint32_t n_ = 0;                     // boxes of the last update that went well, else 0
     std::uint32_t blocks_ = 0;
     double size_when_built_ = 0.0;
     std::uint64_t tests_when_built_ = 0;
+    unsigned finest_builds_ = 0;  // builds to come that take the finest cells at once
+    bool wide_keys_ = false;      // the keys sorted last have 64 bits
     bool worn_ = false, kept_order_ = false, any_invalid_ = false;
 };
 
