@@ -42,7 +42,7 @@ Pieces cut(const Device& device, std::uint64_t turns) {
     const std::uint32_t budget = loop_budget(device);
     if (budget != std::numeric_limits<std::uint32_t>::max()) {
         // A turn may bring a pair in each lane; a task searches for its beginning twice.
-        const std::uint64_t a_turn = info.lanes + 2, a_search = 2 * 64;
+        const std::uint64_t a_turn = info.lanes + 2, a_search = 128;
         pieces.turns = std::min<std::uint64_t>(pieces.turns, (budget - a_search) / a_turn);
         pieces.most_tasks = static_cast<std::uint32_t>(budget / (pieces.turns * a_turn + a_search));
         if (turns / pieces.turns >= std::uint64_t{1} << 31)
