@@ -1,7 +1,7 @@
 // What these cores give without portability: two plain programs written for AVX-512 and OpenMP. They show how much
 // clinch pays for being OpenCL; they are tuned for scenes, not for every input.
 //   grid   cells as wide as the widest box, counting sort by the min corner, half neighbourhood, vectors
-//          inside; a few boxes much larger than the others are tested against all
+//          inside; a few boxes much larger than the others are tested against all cells that they reach
 //   sweep  sort on the axis of greatest variance, forward sweep in vectors
 #include <immintrin.h>
 #include <omp.h>
@@ -205,7 +205,7 @@ private:
         limit_ = widest <= 2.0 * usual ? widest : usual;
         double cell = std::max(limit_ * 1.000001, 1e-30), cells = 1.0;
         for (std::size_t d = 0; d < 3; ++d) cells *= std::max((double{high[d]} - double{low[d]}) / cell, 1.0);
-        cell *= std::cbrt(std::max(cells / (16.0 * static_cast<double>(boxes.size()) + 1000.0), 1.0));
+        cell *= std::cbrt(std::max(cells / (8.0 * static_cast<double>(boxes.size()) + 1000.0), 1.0));
         for (std::size_t d = 0; d < 3; ++d) {
             const double extent = double{high[d]} - double{low[d]};
             low_[d] = low[d];
@@ -227,11 +227,15 @@ private:
         return *at;
     }
 
+    /// 1 .. cells: the outermost ones go on for ever.
+    std::size_t cell_along(std::size_t d, double x) const {
+        const double c = std::max((x - low_[d]) * scale_[d], 0.0);
+        return std::min(static_cast<std::size_t>(c), cells_[d] - 1) + 1;
+    }
+
     std::uint32_t cell_of(const Aabb& box) const {
-        std::array<std::size_t, 3> c{};
-        for (std::size_t d = 0; d < 3; ++d)
-            c[d] = std::min(static_cast<std::size_t>((double{box.min[d]} - low_[d]) * scale_[d]), cells_[d] - 1);
-        return static_cast<std::uint32_t>((c[2] + 1) * layer_ + (c[1] + 1) * row_ + c[0] + 1);
+        const std::size_t x = cell_along(0, double{box.min[0]}), y = cell_along(1, double{box.min[1]});
+        return static_cast<std::uint32_t>(cell_along(2, double{box.min[2]}) * layer_ + y * row_ + x);
     }
 
     /// A counting sort, a histogram a thread. Large boxes go into the cell after all others.
@@ -290,20 +294,33 @@ private:
         }
     }
 
-    /// Each large box against all small ones, block by block, and against the large ones after it.
+    /// Each large box against the small ones in the rows of cells that it reaches, and the large ones after it.
     void test_large(View<const Aabb> boxes) {
-        const std::size_t small = sorted_.number.size() - width - large_.size(), block = 4096;
+        const std::size_t small = sorted_.number.size() - width - large_.size();
 #pragma omp parallel num_threads(static_cast <int>(threads_))
         {
             Out& out = outs_[this_thread()];
-#pragma omp for schedule(dynamic, 1)
-            for (std::size_t begin = 0; begin < small; begin += block)
-                for (const std::uint32_t i : large_)
-                    test_run(Query(boxes[i], i), sorted_, begin, std::min(begin + block, small), out);
-#pragma omp for schedule(dynamic, 16)
-            for (std::size_t k = 0; k < large_.size(); ++k)
-                test_run(Query(sorted_, small + k), sorted_, small + k + 1, small + large_.size(), out);
+#pragma omp for schedule(dynamic, 4)
+            for (std::size_t k = 0; k < large_.size(); ++k) {
+                const Aabb& box = boxes[large_[k]];
+                const Query query(box, large_[k]);
+                test_reach(query, box, out);
+                test_run(query, sorted_, small + k + 1, small + large_.size(), out);
+            }
         }
+    }
+
+    void test_reach(const Query& query, const Aabb& box, Out& out) const {
+        std::array<std::size_t, 3> first{}, last{};
+        for (std::size_t d = 0; d < 3; ++d) {
+            first[d] = cell_along(d, double{box.min[d]} - 1.000001 * limit_);
+            last[d] = cell_along(d, double{box.max[d]});
+        }
+        for (std::size_t z = first[2]; z <= last[2]; ++z)
+            for (std::size_t y = first[1]; y <= last[1]; ++y) {
+                const std::size_t row = z * layer_ + y * row_;
+                test_run(query, sorted_, start_[row + first[0]], start_[row + last[0] + 1], out);
+            }
     }
 
     std::size_t threads_, row_ = 0, layer_ = 0;
