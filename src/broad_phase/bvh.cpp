@@ -31,10 +31,13 @@ private:
 std::uint32_t Bvh::window() const {
     const std::uint32_t most = most_loop_iterations(device_.info());
     if (most == std::numeric_limits<std::uint32_t>::max()) return 0;
-    // Turns that one more block costs at most: taken up lane by lane, each of its boxes against each box of the
-    // other block, each pair put out. Half the turns are left for the way through the tree and for the last candidates.
-    const std::uint32_t lanes = device_.info().lanes, steps = tree_.width() / lanes;
-    return most / 2 / (steps * (7 * lanes + 1 + tree_.width() * (2 * lanes + 5)));
+    // Turns that one more block costs at most. Without lanes: two looks at it, then each of its boxes against each of
+    // the other block. With lanes: taken up lane by lane, the same, and each pair put out. Half the turns are left
+    // for the way through the tree and for the last candidates.
+    const std::uint32_t lanes = device_.info().lanes, width = tree_.width(), steps = width / lanes;
+    const std::uint32_t turns =
+        lanes == 1 ? steps * (width + 3) + 8 : steps * (7 * lanes + 1 + width * (2 * lanes + 5));
+    return most / 2 / turns;
 }
 
 SinkLaunch Bvh::search(const FilterInput& filters) {
