@@ -17,9 +17,10 @@ namespace {
 constexpr std::size_t block = 16;               // boxes tested at once, in plain loops that compilers vectorise
 constexpr std::size_t rows_at_once = 256;       // boxes whose pairs make one list
 constexpr std::size_t lists_at_once = 256;      // between two calls of progress
-constexpr std::size_t serial_rows = 4096;       // up to so many boxes threads cost more than they bring
 constexpr std::size_t shifts_a_box = 16;        // an insertion sort of more is slower than sorting anew
 constexpr std::uint64_t pairs_kept = 1u << 20;  // memory for more is given back before the result takes its own
+// Up to so many tests, or pairs to sort, one thread is done before others have surely begun.
+constexpr std::uint64_t serial_tests = std::uint64_t{1} << 23, serial_pairs = std::uint64_t{1} << 20;
 // So many tests a box, and twice those at first, are borne before a better axis is looked for.
 constexpr std::size_t tests_borne = 64;
 
@@ -108,6 +109,7 @@ private:
     std::size_t boxes_ = 0;  // entries that are boxes: the first ones
     Columns columns_;
     std::uint64_t tests_at_first_ = 0;  // of the call that chose the axis
+    std::uint64_t tests_ = 0;           // of the last call
     bool choose_axis_ = true;
     std::vector<Found> found_;
 };
@@ -209,7 +211,7 @@ std::vector<Pair> HostSweep::joined_by_rows(std::uint64_t total) const {
         for (const Pair& pair : part.pairs) all[ends[pair.a]++] = pair;
     const auto at = [&](std::uint64_t i) { return all.begin() + static_cast<std::ptrdiff_t>(i); };
     const std::size_t runs = (order_.size() + rows_at_once - 1) / rows_at_once;
-    parallel_for(runs, order_.size() > serial_rows, [&](std::size_t run) {
+    parallel_for(runs, total > serial_pairs, [&](std::size_t run) {
         const std::size_t end = std::min(order_.size(), (run + 1) * rows_at_once);
         for (std::size_t a = run * rows_at_once; a < end; ++a) std::sort(at(a == 0 ? 0 : ends[a - 1]), at(ends[a]));
     });
@@ -225,6 +227,7 @@ void HostSweep::deliver(PairList& pairs, FindCounts& counts) {
         counts.static_pairs += part.unmoving;
     }
     counts.box_tests += tests;
+    tests_ = tests;
     if (choose_axis_) tests_at_first_ = tests;
     choose_axis_ = tests / 2 > tests_at_first_ + tests_borne * boxes_;
     check_limit(total, options_);
@@ -252,6 +255,8 @@ void HostSweep::deliver(PairList& pairs, FindCounts& counts) {
 
 void HostSweep::find(BoxInput& input, const FilterInput& filters, PairList& pairs, FindCounts& counts) {
     const View<const Aabb> boxes = input.on_host();
+    // Another number of boxes: a guess. It decides on threads, nothing else.
+    const std::uint64_t n = boxes.size(), expected_tests = n == order_.size() ? tests_ : n * n / 64;
     line_up(boxes);
     fill_columns(boxes);
     counts.invalid_boxes = boxes_ < boxes.size();
@@ -265,7 +270,7 @@ void HostSweep::find(BoxInput& input, const FilterInput& filters, PairList& pair
     }
     for (std::size_t list = 0; list < lists; list += lists_at_once) {
         if (options_.progress) options_.progress(static_cast<double>(list) / static_cast<double>(lists));
-        parallel_for(std::min(lists_at_once, lists - list), boxes_ > serial_rows, [&](std::size_t k) {
+        parallel_for(std::min(lists_at_once, lists - list), expected_tests > serial_tests, [&](std::size_t k) {
             const std::size_t first = (list + k) * rows_at_once;
             test_rows(first, std::min(boxes_, first + rows_at_once), filters, found_[list + k]);
         });
