@@ -19,31 +19,12 @@
 // Defines: LANES, FILTERS; ENTRIES (16): small entries a task of grid_small, a multiple of LANES
 #include "common/lanes.clh"
 #include "common/box.clh"
+#include "common/search.clh"
 #include "broad_phase/pair_sink.clh"
+#include "broad_phase/grid_cells.clh"
 #ifndef ENTRIES
 #define ENTRIES 16
 #endif
-
-// As GridFrame in src/broad_phase/grid.cpp.
-typedef struct {
-    float origin[3];
-    float scale[3];   // cells a unit of length
-    uint size[3];     // cells on an axis
-    uint wrap[3];     // 1: cell numbers wrap around; size is a power of two then
-    uint cells;
-    float widest;     // of a small box
-    float reach;      // a little more: what to look back from a min corner
-    float span;       // boxes this near on x, and
-    float side;       // this near on y and z, are looked for together
-} GridFrame;
-
-// Unwrapped cell number of a coordinate; grows with it. Beyond the grid's ends it is clamped to them.
-inline int cell_of(float x, uint d, constant GridFrame* g) {
-    float c = (x - g->origin[d]) * g->scale[d];
-    return (int)fmin(fmax(c, 0.0f), 1073741824.0f);
-}
-
-inline uint wrapped(int c, uint d, constant GridFrame* g) { return g->wrap[d] ? (uint)c & (g->size[d] - 1) : (uint)c; }
 
 kernel void grid_keys(global const float* restrict boxes, ulong first, uint n, constant GridFrame* g, global uint* restrict keys) {
     uint i = get_global_id(0);
@@ -65,24 +46,6 @@ kernel void grid_gather(global const float* restrict boxes, ulong first, global 
     for (uint d = 0; d < 6; ++d) columns[d * (ulong)stride + i] = i < n ? box[d] : NAN;
 }
 
-// First entry at or after `from` whose key is not below `c`.
-inline uint first_at_least(global const uint* keys, uint n, uint from, uint c) {
-    uint step = 1, low = from, high = from;
-    while (high < n && keys[high] < c) {  // in growing steps past it
-        low = high + 1;
-        high = high + step < n ? high + step : n;
-        step *= 2;
-    }
-    while (low < high) {
-        uint middle = low + (high - low) / 2;
-        if (keys[middle] < c)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 // One work-item 256 cells.
 kernel void grid_starts(global const uint* restrict keys, uint n, uint cells, global uint* restrict start) {
     uint c = get_global_id(0) * 256;
@@ -92,48 +55,6 @@ kernel void grid_starts(global const uint* restrict keys, uint n, uint cells, gl
         start[c] = at;
     }
 }
-
-typedef struct {
-    float min[3], max[3];
-} GridBox;
-
-// Cells on one axis, from `low` on, `count` of them, after wrapping.
-typedef struct {
-    uint low, count;
-} CellRange;
-
-inline CellRange cells_between(float from, float to, uint d, constant GridFrame* g) {
-    int a = cell_of(from, d, g), b = cell_of(to, d, g);
-    CellRange r;
-    if (g->wrap[d]) {
-        r.low = (uint)a & (g->size[d] - 1);
-        r.count = min((uint)(b - a + 1), g->size[d]);
-    } else {
-        a = min(a, (int)g->size[d] - 1);
-        b = min(b, (int)g->size[d] - 1);
-        r.low = (uint)a;
-        r.count = (uint)(b - a + 1);
-    }
-    return r;
-}
-
-inline GridBox box_at(global const float* columns, ulong stride, uint i) {
-    GridBox b;
-    for (uint d = 0; d < 3; ++d) {
-        b.min[d] = columns[d * stride + i];
-        b.max[d] = columns[(d + 3) * stride + i];
-    }
-    return b;
-}
-
-inline uint next_cell(uint c, uint d, constant GridFrame* g) { return c + 1 == g->size[d] ? 0 : c + 1; }
-
-// Where entries lie in memory.
-typedef struct {
-    global const float* columns;
-    ulong stride;
-    global const uint* order;
-} Entries;
 
 // LANES small boxes that are looked for at once, entry i and those after it.
 typedef struct {
@@ -176,22 +97,6 @@ inline void test_queries(const Entries* e, const Query* q, uint from, uint to, P
     for (; j < q->i + LANES && j < to; ++j)  // j - q->i query boxes stand before entry j
         test_run(e, q, above + as_intN(as_mask(lane_numbers >= j - q->i) & 1u), j, j + 1, sink);
     test_run(e, q, above, j, to, sink);
-}
-
-// Entries [from, to) against one box, LANES at a time.
-inline void test_entries(const Entries* e, const GridBox* b, uint id, uint from, uint to, PairSink* sink) {
-    const float min_x = b->min[0], min_y = b->min[1], min_z = b->min[2];
-    const float max_x = b->max[0], max_y = b->max[1], max_z = b->max[2];
-    const ulong stride = e->stride;
-    sink->counts.tests += to - from;
-    for (uint j = from; j < to; j += LANES) {
-        global const float* p = e->columns + j;
-        uint bits = lane_bits(as_mask((load_lanes(0, p) <= max_x) & (load_lanes(0, p + stride) <= max_y) &
-                                      (load_lanes(0, p + 2 * stride) <= max_z) & (load_lanes(0, p + 3 * stride) >= min_x) &
-                                      (load_lanes(0, p + 4 * stride) >= min_y) & (load_lanes(0, p + 5 * stride) >= min_z)));
-        if (to - j < LANES) bits &= (1u << (to - j)) - 1;
-        if (bits != 0) sink_put_lanes(sink, e->order + j, bits, id);
-    }
 }
 
 // All small entries in the cells of the window between `low` and `high`, against query boxes.
@@ -274,20 +179,7 @@ kernel void grid_large(global const float* restrict columns, ulong stride, globa
     for (uint task = sink_task(&sink); task < sink.task_end; task = sink_task(&sink)) {
         uint i = large + task / PARTS;
         GridBox b = box_at(columns, stride, i);
-        CellRange x = cells_between(b.min[0] - g->reach, b.max[0], 0, g);
-        CellRange y = cells_between(b.min[1] - g->reach, b.max[1], 1, g);
-        CellRange z = cells_between(b.min[2] - g->reach, b.max[2], 2, g);
-        for (uint zk = task & (PARTS - 1); zk < z.count; zk += PARTS) {
-            uint zc = z.low + zk;
-            if (zc >= g->size[2]) zc -= g->size[2];
-            for (uint yk = 0, yc = y.low; yk < y.count; ++yk, yc = next_cell(yc, 1, g)) {
-                uint first = (zc * g->size[1] + yc) * g->size[0];
-                uint end = x.low + x.count;
-                test_entries(&e, &b, order[i], start[first + x.low], start[first + min(end, g->size[0])], &sink);
-                if (end > g->size[0])  // wrapped around
-                    test_entries(&e, &b, order[i], start[first], start[first + end - g->size[0]], &sink);
-            }
-        }
+        walk_cells(&e, start, g, &b, order[i], task & (PARTS - 1), PARTS, &sink);
     }
     sink_end(&sink);
 }

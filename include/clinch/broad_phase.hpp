@@ -67,6 +67,16 @@ public:
     /// next call or the end of this object. Throws Error; then there is no result.
     View<const Pair> find(View<const Aabb> boxes, const FilterColumns& filters = {});
 
+    /// As find(), for boxes of which only some changed since the last call of find() or update(): `changed` are their
+    /// numbers, in any order, and may name boxes that did not change; a box whose group, mask or motion changed
+    /// is to be among them. When they are few among many boxes (with "auto" or "grid"), pairs are kept from call to
+    /// call and only those of changed boxes are tested again, only boxes that left a slightly larger box are looked for
+    /// again; the first such call costs about three times a find(). When they are many, or the number of boxes
+    /// is another one, or nothing was found yet, this is find(). When there are none, it is the last result. The result
+    /// is that of find(), with Order::Sorted. A number that is no box is InvalidArgument.
+    View<const Pair> update(View<const Aabb> boxes, View<const std::uint32_t> changed,
+                            const FilterColumns& filters = {});
+
     /// The pairs that find() would list, handed to `take` piece by piece: every pair once, at most stream_bytes of
     /// them at a time (8 bytes a pair), so that memory does not grow with the result. A piece is valid during
     /// the call of `take`; with Order::Sorted the pairs of a piece ascend, but not from piece to piece.

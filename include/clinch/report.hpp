@@ -21,7 +21,10 @@ struct StageTimes {
 
 /// Work that was not done because the scene did not need it.
 struct Skipped {
-    std::uint64_t bounds = 0;          ///< boxes not computed again since their rows did not change
+    std::uint64_t bounds = 0;     ///< boxes not computed again since their rows did not change
+    std::uint64_t unchanged = 0;  ///< boxes the broad phase did not look at since they did not change
+    /// Boxes that changed but stayed within their fattened box: only their pairs were tested again.
+    std::uint64_t inside = 0;
     std::uint64_t pairs_filtered = 0;  ///< overlapping pairs dropped by group and mask
     std::uint64_t static_pairs = 0;    ///< overlapping pairs dropped since neither body can move
 };

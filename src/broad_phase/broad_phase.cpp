@@ -65,46 +65,105 @@ detail::Device& BroadPhase::Impl::device() const {
     return context.open(context.primary());
 }
 
-View<const Pair> BroadPhase::Impl::find(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
-                                        const detail::FilterInput& filters, bool list_rejected) {
-    pairs.clear();
-    run(row, boxes, filters, list_rejected);
-    return pairs.view();
-}
-
-void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
-                           bool list_rejected) {
+// Runs `search(counts)`, which puts pairs into `pairs` and returns whether it did, and writes the report.
+template <class Search>
+bool BroadPhase::Impl::measured(const char* algorithm, detail::BoxInput& boxes, const Search& search) {
     const detail::Stopwatch total;
-    report = Report{};
-    if (row.needs_device && !detail::runs_on(row, context.infos[context.primary()]))
-        throw Error(ErrorCode::DeviceFailed, std::string("the algorithm '") + row.name + "' cannot run on '" +
-                                                 context.infos[context.primary()].name +
-                                                 "', whose driver has the quirk loops-end-early; brute can");
-    auto& algorithm = made[&row];
-    if (!algorithm) algorithm = row.make(row.needs_device ? &device() : nullptr, options);
-    if (row.needs_device) boxes.on(device());
-    report.ms.upload = total.ms();
-
     detail::FindCounts counts;
-    const detail::Stopwatch broad;
     try {
-        algorithm->find(boxes, filters, pairs, counts);
+        if (!search(counts)) return false;
     } catch (...) {
         pairs.clear();
         throw;
     }
     report.ms.download = counts.download_ms;
-    report.ms.broad = broad.ms() - counts.download_ms;
-    if (counts.invalid_boxes && list_rejected) report.rejected = rejected_boxes(boxes.on_host());
+    report.ms.broad = total.ms() - counts.download_ms - report.ms.upload;
     report.bodies = boxes.count();
     report.pairs = pairs.size();
     report.box_tests = counts.box_tests;
-    report.algorithm = row.name;
+    report.algorithm = algorithm;
+    report.skipped.inside = counts.boxes_inside;
     report.skipped.pairs_filtered = counts.pairs_filtered;
     report.skipped.static_pairs = counts.static_pairs;
+    any_invalid = counts.invalid_boxes;
     for (const auto& opened : context.devices)
         if (opened != nullptr) report.peak_device_bytes += opened->report().peak_bytes;
     report.ms.total = total.ms();
+    return true;
+}
+
+View<const Pair> BroadPhase::Impl::find(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
+                                        const detail::FilterInput& filters, bool list_rejected) {
+    pairs.clear();
+    run(row, boxes, filters, list_rejected);
+    listed_boxes = boxes.count();
+    return pairs.view();
+}
+
+void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
+                           bool list_rejected) {
+    listed_boxes = 0;
+    if (incremental) incremental->forget();
+    report = Report{};
+    if (row.needs_device && !detail::runs_on(row, context.infos[context.primary()]))
+        throw Error(ErrorCode::DeviceFailed, std::string("the algorithm '") + row.name + "' cannot run on '" +
+                                                 context.infos[context.primary()].name +
+                                                 "', whose driver has the quirk loops-end-early; brute can");
+    measured(row.name, boxes, [&](detail::FindCounts& counts) {
+        const detail::Stopwatch upload;
+        auto& algorithm = made[&row];
+        if (!algorithm) algorithm = row.make(row.needs_device ? &device() : nullptr, options);
+        if (row.needs_device) boxes.on(device());
+        report.ms.upload = upload.ms();
+        algorithm->find(boxes, filters, pairs, counts);
+        return true;
+    });
+    if (any_invalid && list_rejected) report.rejected = rejected_boxes(boxes.on_host());
+}
+
+bool BroadPhase::Impl::steps_pay(const detail::AlgorithmRow& row, std::uint64_t count, std::uint64_t changed) const {
+    constexpr std::uint64_t fewest_boxes = 10000, boxes_a_change = 8;
+    return count >= fewest_boxes && count != steps_refused && changed <= count / boxes_a_change &&
+           row.make == detail::make_grid;
+}
+
+bool BroadPhase::Impl::step(detail::BoxInput& boxes, const detail::Changes& changes,
+                            const detail::FilterInput& filters) {
+    if (!incremental || !incremental->valid()) return false;
+    pairs.clear();
+    listed_boxes = 0;
+    report = Report{};
+    if (!measured("grid", boxes, [&](detail::FindCounts& counts) {
+            return incremental->update(boxes, changes, filters, pairs, counts);
+        }))
+        return false;
+    report.skipped.unchanged = boxes.count() - std::min<std::uint64_t>(boxes.count(), changes.bodies.size());
+    listed_boxes = boxes.count();
+    return true;
+}
+
+bool BroadPhase::Impl::begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters) {
+    pairs.clear();
+    listed_boxes = 0;
+    report = Report{};
+    made.clear();  // their memory is needed now
+    if (!incremental) incremental = std::make_unique<detail::Incremental>(device(), options);
+    if (!measured("grid", boxes,
+                  [&](detail::FindCounts& counts) { return incremental->build(boxes, filters, pairs, counts); })) {
+        incremental.reset();
+        steps_refused = boxes.count();
+        return false;
+    }
+    listed_boxes = boxes.count();
+    return true;
+}
+
+View<const Pair> BroadPhase::Impl::same_again() {
+    report.box_tests = 0;
+    report.ms = {};
+    report.skipped = {};
+    report.skipped.unchanged = listed_boxes;
+    return pairs.view();
 }
 
 BroadPhase::BroadPhase(Context& context, BroadPhaseOptions options)
@@ -117,6 +176,36 @@ View<const Pair> BroadPhase::find(View<const Aabb> boxes, const FilterColumns& f
     check_count(boxes.size());
     detail::BoxInput input(boxes, impl_->staging);
     return impl_->find(impl_->choose(boxes.size()), input, {filters, 0}, true);
+}
+
+View<const Pair> BroadPhase::update(View<const Aabb> boxes, View<const std::uint32_t> changed,
+                                    const FilterColumns& filters) {
+    check_count(boxes.size());
+    for (const std::uint32_t i : changed)
+        if (i >= boxes.size())
+            throw Error(ErrorCode::InvalidArgument, "box " + std::to_string(i) +
+                                                        " is said to have changed, but there are " +
+                                                        std::to_string(boxes.size()) + " boxes");
+    if (impl_->listed_boxes != boxes.size() || boxes.empty()) return find(boxes, filters);
+    if (changed.empty()) return impl_->same_again();
+    if (!impl_->steps_pay(impl_->choose(boxes.size()), boxes.size(), changed.size())) {
+        impl_->incremental.reset();
+        return find(boxes, filters);
+    }
+    std::vector<Aabb> rows(changed.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = boxes[changed[i]];
+    bool done = false;
+    if (impl_->incremental && impl_->incremental->valid()) {
+        detail::BoxInput there(impl_->device(), impl_->staging.handle(), 0, static_cast<std::uint32_t>(boxes.size()));
+        done = impl_->step(there, {changed, rows.data(), false}, {filters, 0});
+    }
+    if (!done) {
+        detail::BoxInput all(boxes, impl_->staging);
+        done = impl_->begin_steps(all, {filters, 0});
+    }
+    if (!done) return find(boxes, filters);
+    if (impl_->any_invalid) impl_->report.rejected = rejected_boxes(boxes);
+    return impl_->pairs.view();
 }
 
 std::uint64_t BroadPhase::stream(View<const Aabb> boxes, const std::function<void(View<const Pair>)>& take,

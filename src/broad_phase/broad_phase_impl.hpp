@@ -6,6 +6,7 @@
 
 #include "clinch/broad_phase.hpp"
 #include "src/broad_phase/algorithm.hpp"
+#include "src/broad_phase/incremental.hpp"
 #include "src/device/context_impl.hpp"
 
 namespace clinch {
@@ -15,8 +16,12 @@ struct BroadPhase::Impl {
     BroadPhaseOptions options;
     detail::Buffer staging;  // boxes of the host on the device
     std::map<const detail::AlgorithmRow*, std::unique_ptr<detail::BroadPhaseAlgorithm>> made;
-    detail::PairList pairs;  // after `made`, whose buffers it may map: it ends first
+    std::unique_ptr<detail::Incremental> incremental;  // only while little changes from call to call
+    detail::PairList pairs;                            // after `made`, whose buffers it may map: it ends first
     Report report;
+    std::uint64_t steps_refused = 0;  // number of boxes for which keeping pairs did not pay
+    bool any_invalid = false;         // among the boxes of the last call
+    std::uint64_t listed_boxes = 0;   // boxes of the last call, if `pairs` is its list; else 0
 
     Impl(Context& c, BroadPhaseOptions o);
     /// The algorithm for `count` boxes.
@@ -26,9 +31,22 @@ struct BroadPhase::Impl {
     /// Finds the pairs of `boxes` with `row`; boxes that are no boxes are listed if `list_rejected`.
     View<const Pair> find(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
                           bool list_rejected);
+    /// Whether keeping pairs from call to call may pay when `changed` of `count` boxes changed.
+    bool steps_pay(const detail::AlgorithmRow& row, std::uint64_t count, std::uint64_t changed) const;
+    /// As find(), by what changed since the last call, boxes being in device memory. False: not done, and `boxes` may
+    /// be as before the changes.
+    bool step(detail::BoxInput& boxes, const detail::Changes& changes, const detail::FilterInput& filters);
+    /// Begins keeping pairs. False: it does not pay, and find() is to be called.
+    bool begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters);
+    /// The last list once more, nothing having changed.
+    View<const Pair> same_again();
     /// The same into `pairs` as it is set up.
     void run(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
              bool list_rejected);
+
+private:
+    template <class Search>
+    bool measured(const char* algorithm, detail::BoxInput& boxes, const Search& search);
 };
 
 }  // namespace clinch

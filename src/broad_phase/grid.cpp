@@ -1,35 +1,13 @@
-// grid: boxes binned by their min corner [thesis 4.2.6]. See cl/broad_phase/grid.cl.
+#include "src/broad_phase/grid.hpp"
+
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <string>
 #include <vector>
-
-#include "src/broad_phase/algorithm.hpp"
-#include "src/broad_phase/box_statistics.hpp"
-#include "src/broad_phase/pair_sink.hpp"
-#include "src/primitives/radix_sort.hpp"
 
 namespace clinch::detail {
 namespace {
 
-// As the struct of the same name in grid.cl.
-struct GridFrame {
-    float origin[3];
-    float scale[3];
-    std::uint32_t size[3];
-    std::uint32_t wrap[3];
-    std::uint32_t cells;
-    float widest;
-    float reach;
-    float span;
-    float side;
-    float unused[15];  // to a size that is set without waiting
-};
-static_assert(sizeof(GridFrame) == 128, "kernels read this layout");
-
-constexpr std::uint32_t padding = 64;  // entries behind the last that vector loads may touch
-constexpr std::uint32_t parts = 8;     // PARTS of grid_large
+constexpr std::uint32_t parts = 8;  // PARTS of grid_large
 
 unsigned bits_of(std::uint64_t value) {
     unsigned bits = 0;
@@ -162,28 +140,7 @@ GridFrame make_frame(const BoxStatistics& stats, const Choice& choice) {
     return frame;
 }
 
-class Grid : public BroadPhaseAlgorithm {
-public:
-    Grid(Device& device, const BroadPhaseOptions& options)
-        : device_(device), options_(options), statistics_(device), sort_(device), sink_(device, options) {}
-
-    void find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, FindCounts& counts) override;
-
-private:
-    void bin(BoxInput& boxes, const GridFrame& frame);
-    Kernel& search_kernel(const char* name, const FilterInput& filters);
-    std::uint32_t entries_a_task() const;
-
-    Device& device_;
-    const BroadPhaseOptions& options_;
-    StatisticsGatherer statistics_;
-    RadixSort sort_;
-    PairSink sink_;
-    Kernel keys_kernel_, gather_kernel_, starts_kernel_;
-    std::map<std::string, Kernel> search_kernels_;
-    Buffer frame_, keys_, order_, columns_, start_;
-    std::uint64_t stride_ = 0;
-};
+}  // namespace
 
 Kernel& Grid::search_kernel(const char* name, const FilterInput& filters) {
     const char* const defines = PairSink::defines(filters);
@@ -207,9 +164,10 @@ void Grid::bin(BoxInput& boxes, const GridFrame& frame) {
         starts_kernel_ = device_.kernel("broad_phase/grid", "grid_starts");
     }
     const std::uint32_t n = boxes.count();
-    stride_ = std::uint64_t{n} + padding;
+    stride_ = std::uint64_t{n} + spare_ + padding;
+    cells_ = frame.cells;
     device_.reserve(frame_, sizeof frame, "the frame of a grid");
-    device_.set(frame_, frame);
+    device_.write(frame_, &frame, sizeof frame);
     device_.reserve(keys_, n * sizeof(std::uint32_t), "cells of boxes");
     device_.reserve(order_, stride_ * sizeof(std::uint32_t), "the order of boxes");
     device_.reserve(columns_, stride_ * 6 * sizeof(float), "boxes as columns");
@@ -225,6 +183,7 @@ void Grid::bin(BoxInput& boxes, const GridFrame& frame) {
 
 void Grid::find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, FindCounts& counts) {
     const std::uint32_t n = boxes.count();
+    cells_ = 0;
     if (n < 2) {
         counts.invalid_boxes = n == 1;  // one box is looked at on the host
         return;
@@ -250,8 +209,6 @@ void Grid::find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, Fi
     }
     sink_.collect(launches, filters, n, pairs, counts);
 }
-
-}  // namespace
 
 std::unique_ptr<BroadPhaseAlgorithm> make_grid(Device* device, const BroadPhaseOptions& options) {
     return std::make_unique<Grid>(*device, options);

@@ -6,6 +6,7 @@
 #include <boost/compute/context.hpp>
 #include <boost/compute/kernel.hpp>
 #include <boost/compute/program.hpp>
+#include <deque>
 #include <map>
 #include <optional>
 #include <vector>
@@ -18,6 +19,9 @@
 namespace clinch::detail {
 
 namespace compute = boost::compute;
+
+// Copying so many bytes costs less than waiting for the queue.
+constexpr std::size_t little = std::size_t{1} << 16, most_in_flight = 64;
 
 // --- memory ------------------------------------------------------------------------------------
 
@@ -59,6 +63,7 @@ struct Device::Impl {
     std::map<std::string, std::string> added_modules;  // sources given by add_module
     std::shared_ptr<MemoryAccount> account = std::make_shared<MemoryAccount>();
     DeviceReport report;
+    std::deque<std::vector<std::byte>> in_flight;  // host data of writes that nothing has waited for yet
 
     Impl(const DeviceInfo& i, cl_device_id id, const ContextOptions& o)
         : info(i), options(o), device(id), cache(cache_folder(o), o.log) {
@@ -210,14 +215,30 @@ void Device::reserve(Buffer& buffer, std::size_t bytes, const char* what) {
 
 void Device::write(const Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset) {
     if (bytes == 0) return;
+    if (bytes <= little) {
+        const auto* first = static_cast<const std::byte*>(data);
+        write_later(buffer, {first, first + bytes}, offset);
+        return;
+    }
     check(clEnqueueWriteBuffer(queue(), buffer.handle(), CL_TRUE, offset, bytes, data, 0, nullptr, nullptr),
           "clEnqueueWriteBuffer");
+}
+
+// The queue reads the data some time before the next command that is waited for is done.
+void Device::write_later(const Buffer& buffer, std::vector<std::byte> data, std::size_t offset) {
+    if (impl_->in_flight.size() >= most_in_flight) finish();
+    impl_->in_flight.push_back(std::move(data));
+    const std::vector<std::byte>& kept = impl_->in_flight.back();
+    check(
+        clEnqueueWriteBuffer(queue(), buffer.handle(), CL_FALSE, offset, kept.size(), kept.data(), 0, nullptr, nullptr),
+        "clEnqueueWriteBuffer");
 }
 
 void Device::read(cl_mem memory, void* data, std::size_t bytes, std::size_t offset) {
     if (bytes == 0) return;
     check(clEnqueueReadBuffer(queue(), memory, CL_TRUE, offset, bytes, data, 0, nullptr, nullptr),
           "clEnqueueReadBuffer");
+    impl_->in_flight.clear();
 }
 
 void Device::read(const Buffer& buffer, void* data, std::size_t bytes, std::size_t offset) {
@@ -226,12 +247,12 @@ void Device::read(const Buffer& buffer, void* data, std::size_t bytes, std::size
 
 void Device::clear(const Buffer& buffer, std::size_t bytes) {
     if (bytes == 0) return;
+    if (bytes <= little) {
+        write_later(buffer, std::vector<std::byte>(bytes), 0);
+        return;
+    }
     const cl_uint zero = 0;
-    fill(buffer, &zero, sizeof zero, bytes);
-}
-
-void Device::fill(const Buffer& buffer, const void* pattern, std::size_t pattern_bytes, std::size_t bytes) {
-    check(clEnqueueFillBuffer(queue(), buffer.handle(), pattern, pattern_bytes, 0, bytes, 0, nullptr, nullptr),
+    check(clEnqueueFillBuffer(queue(), buffer.handle(), &zero, sizeof zero, 0, bytes, 0, nullptr, nullptr),
           "clEnqueueFillBuffer");
 }
 
@@ -242,6 +263,7 @@ Mapping Device::map(const Buffer& buffer, std::size_t bytes) {
     void* pointer =
         clEnqueueMapBuffer(queue(), buffer.handle(), CL_TRUE, CL_MAP_READ, 0, bytes, 0, nullptr, nullptr, &status);
     check(status, "clEnqueueMapBuffer");
+    impl_->in_flight.clear();
     mapping.device_ = this;
     mapping.memory_ = buffer.handle();
     mapping.pointer_ = pointer;
@@ -281,6 +303,7 @@ void Device::launch_items(const Kernel& kernel, std::size_t items) {
 
 void Device::finish() {
     check(clFinish(queue()), "clFinish");
+    impl_->in_flight.clear();
 }
 
 DeviceReport Device::report() const {

@@ -14,6 +14,7 @@
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "clinch/context.hpp"
 #include "clinch/device.hpp"
@@ -158,18 +159,11 @@ public:
     Buffer allocate(std::size_t bytes, const char* what);
     /// Makes `buffer` at least `bytes` long; when it grows its content is lost.
     void reserve(Buffer& buffer, std::size_t bytes, const char* what);
-    /// Copies host memory in; the host memory may be reused on return.
+    /// Copies host memory in; the host memory may be reused on return. Little of it does not wait.
     void write(const Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset = 0);
     /// Copies out to host memory; waits for it.
     void read(const Buffer& buffer, void* data, std::size_t bytes, std::size_t offset = 0);
     void read(cl_mem memory, void* data, std::size_t bytes, std::size_t offset = 0);
-    /// Copies a plain value of 1, 2, 4, ... 128 bytes in, without waiting for anything.
-    template <class T>
-    void set(const Buffer& buffer, const T& value) {
-        static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 128 && (sizeof(T) & (sizeof(T) - 1)) == 0,
-                      "a pattern of OpenCL");
-        fill(buffer, &value, sizeof value, sizeof value);
-    }
     /// Sets the first `bytes` (a multiple of 4) to zero.
     void clear(const Buffer& buffer, std::size_t bytes);
     /// Readable host memory of the first `bytes`; waits for it. `buffer` must outlive the mapping.
@@ -192,7 +186,7 @@ public:
 
 private:
     friend class Mapping;
-    void fill(const Buffer& buffer, const void* pattern, std::size_t pattern_bytes, std::size_t bytes);
+    void write_later(const Buffer& buffer, std::vector<std::byte> data, std::size_t offset);
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
