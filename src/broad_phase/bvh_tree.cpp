@@ -151,8 +151,9 @@ void BvhTree::sort(BoxInput& boxes, const BoxStatistics& stats, bool finest) {
 // Whether so many blocks lie in a single cell that searching them, each against each if they are all in the same, would
 // cost more than all others, which meet some sixteen each. Waits.
 bool BvhTree::crowded() {
+    constexpr std::uint32_t few_blocks = 128;  // each against each of these is less than one more sort
+    if (blocks_ <= few_blocks) return false;
     const std::uint32_t whole_blocks = blocks_ - 1;
-    if (whole_blocks == 0) return false;
     const std::uint32_t items = items_for(whole_blocks), per_item = (whole_blocks - 1) / items + 1;
     const std::size_t group = device_.group_size();
     device_.launch((wide_keys_ ? kernels64_ : kernels32_).crowded.args(keys_, whole_blocks, per_item, items, measures_),
