@@ -31,6 +31,9 @@ struct BroadPhaseOptions {
     /// Device memory for work in between (bit buffers); larger means fewer passes. Pairs wait in up to
     /// four times as much. At least what one row of boxes needs is taken.
     std::size_t scratch_bytes = std::size_t{64} << 20;
+    /// Tell at each list of find() and update() which pairs are new in it and which are gone: added() and removed().
+    /// Costs a pass over the list and a copy of it. With Order::Any it is InvalidArgument.
+    bool events = false;
     /// Room for the pairs that stream() hands over at a time, on the device and on the host.
     std::size_t stream_bytes = std::size_t{64} << 20;
     /// Called now and then during long work with the share done, 0 to 1; may throw to stop the work.
@@ -87,6 +90,13 @@ public:
 
     /// The number of pairs that find() would list; no pair is stored.
     std::uint64_t count(View<const Aabb> boxes, const FilterColumns& filters = {});
+
+    /// With BroadPhaseOptions::events: the pairs of the last list that were not in the list before, ascending; at the
+    /// first list all. Lists are those of find() and update(); after an error the last one before it counts. Valid
+    /// until the next call.
+    View<const Pair> added() const noexcept;
+    /// The pairs that were in the list before and are not in the last one, ascending.
+    View<const Pair> removed() const noexcept;
 
     /// Counts and times of the last call that returned.
     const Report& report() const noexcept;

@@ -22,6 +22,10 @@ public:
     /// Candidate pairs of body indices: boxes overlap, or a box reaches into a plane, and the
     /// filters of both bodies allow it. In the order BroadPhaseOptions asks for.
     View<const Pair> pairs() const;
+    /// With BroadPhaseOptions::events: the pairs that were not there, or are no longer there, after the step before,
+    /// ascending. After a step that failed the last one before it counts.
+    View<const Pair> added() const noexcept;
+    View<const Pair> removed() const noexcept;
     /// The box of every row, world space, float32, rounded outward: it holds the exact shape grown
     /// by the body's margin. Rows without a box (rejected, removed, planes) hold NaN. Copied from
     /// the device when first asked for: 24 bytes a row.
@@ -36,8 +40,8 @@ private:
     Impl* impl_;
 };
 
-/// Steps scenes: bounds, then broad phase. Keeps boxes and buffers between steps, so that stepping
-/// the same scene again costs only what changed in it.
+/// Steps scenes: bounds, then broad phase. Keeps boxes, pairs and buffers between steps, so that stepping
+/// the same scene again costs only what changed in it, and next to nothing when nothing did.
 class Pipeline {
 public:
     /// `context` must outlive this object. Builds nothing yet. Errors as BroadPhase.

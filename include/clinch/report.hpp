@@ -34,7 +34,7 @@ struct Report {
     std::uint64_t bodies = 0;  ///< rejected ones included
     std::uint64_t pairs = 0;
     std::uint64_t box_tests = 0;  ///< box against box tests done by the broad phase
-    std::string algorithm;        ///< the broad phase that ran, its name in the registry
+    std::string algorithm;        ///< the broad phase that ran: its name in the registry, or "incremental"
     StageTimes ms;
     Skipped skipped;
     std::vector<Rejection> rejected;      ///< ascending by body

@@ -54,6 +54,9 @@ BroadPhase::Impl::Impl(Context& c, BroadPhaseOptions o) : context(c.impl()), opt
         throw Error(ErrorCode::InvalidArgument,
                     "the algorithm '" + options.algorithm +
                         "' needs an OpenCL device, but the context was made for the host alone");
+    if (options.events && options.order == Order::Any)
+        throw Error(ErrorCode::InvalidArgument,
+                    "events need sorted pairs (Order::Sorted), but any order (Order::Any) was asked for");
 }
 
 const detail::AlgorithmRow& BroadPhase::Impl::choose(std::uint64_t count) const {
@@ -96,8 +99,14 @@ View<const Pair> BroadPhase::Impl::find(const detail::AlgorithmRow& row, detail:
                                         const detail::FilterInput& filters, bool list_rejected) {
     pairs.clear();
     run(row, boxes, filters, list_rejected);
-    listed_boxes = boxes.count();
+    listed(boxes.count());
     return pairs.view();
+}
+
+// `pairs` is the list of `count` boxes.
+void BroadPhase::Impl::listed(std::uint64_t count) {
+    listed_boxes = count;
+    if (options.events) events.update(pairs.view());
 }
 
 void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
@@ -123,8 +132,9 @@ void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& bo
 
 bool BroadPhase::Impl::steps_pay(const detail::AlgorithmRow& row, std::uint64_t count, std::uint64_t changed) const {
     constexpr std::uint64_t fewest_boxes = 10000, boxes_a_change = 8;
-    return count >= fewest_boxes && count != steps_refused && changed <= count / boxes_a_change &&
-           row.make == detail::make_grid;
+    return count >= fewest_boxes && count != steps_refused && changed <= count / boxes_a_change && row.needs_device &&
+           (options.algorithm == "auto" || options.algorithm == "grid") &&
+           detail::runs_on(detail::algorithm_named("grid"), context.infos[context.primary()]);
 }
 
 bool BroadPhase::Impl::step(detail::BoxInput& boxes, const detail::Changes& changes,
@@ -133,12 +143,12 @@ bool BroadPhase::Impl::step(detail::BoxInput& boxes, const detail::Changes& chan
     pairs.clear();
     listed_boxes = 0;
     report = Report{};
-    if (!measured("grid", boxes, [&](detail::FindCounts& counts) {
+    if (!measured("incremental", boxes, [&](detail::FindCounts& counts) {
             return incremental->update(boxes, changes, filters, pairs, counts);
         }))
         return false;
     report.skipped.unchanged = boxes.count() - std::min<std::uint64_t>(boxes.count(), changes.bodies.size());
-    listed_boxes = boxes.count();
+    listed(boxes.count());
     return true;
 }
 
@@ -148,13 +158,13 @@ bool BroadPhase::Impl::begin_steps(detail::BoxInput& boxes, const detail::Filter
     report = Report{};
     made.clear();  // their memory is needed now
     if (!incremental) incremental = std::make_unique<detail::Incremental>(device(), options);
-    if (!measured("grid", boxes,
+    if (!measured("incremental", boxes,
                   [&](detail::FindCounts& counts) { return incremental->build(boxes, filters, pairs, counts); })) {
         incremental.reset();
         steps_refused = boxes.count();
         return false;
     }
-    listed_boxes = boxes.count();
+    listed(boxes.count());
     return true;
 }
 
@@ -163,6 +173,7 @@ View<const Pair> BroadPhase::Impl::same_again() {
     report.ms = {};
     report.skipped = {};
     report.skipped.unchanged = listed_boxes;
+    events.same_again();
     return pairs.view();
 }
 
@@ -226,6 +237,13 @@ std::uint64_t BroadPhase::count(View<const Aabb> boxes, const FilterColumns& fil
     impl_->pairs.count_only();
     impl_->run(impl_->choose(boxes.size()), input, {filters, 0}, true);
     return impl_->report.pairs;
+}
+
+View<const Pair> BroadPhase::added() const noexcept {
+    return impl_->events.added();
+}
+View<const Pair> BroadPhase::removed() const noexcept {
+    return impl_->events.removed();
 }
 
 const Report& BroadPhase::report() const noexcept {

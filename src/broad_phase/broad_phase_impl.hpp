@@ -7,6 +7,7 @@
 #include "clinch/broad_phase.hpp"
 #include "src/broad_phase/algorithm.hpp"
 #include "src/broad_phase/incremental.hpp"
+#include "src/broad_phase/pair_events.hpp"
 #include "src/device/context_impl.hpp"
 
 namespace clinch {
@@ -18,6 +19,7 @@ struct BroadPhase::Impl {
     std::map<const detail::AlgorithmRow*, std::unique_ptr<detail::BroadPhaseAlgorithm>> made;
     std::unique_ptr<detail::Incremental> incremental;  // only while little changes from call to call
     detail::PairList pairs;                            // after `made`, whose buffers it may map: it ends first
+    detail::PairEvents events;                         // kept up to date if the options ask for it
     Report report;
     std::uint64_t steps_refused = 0;  // number of boxes for which keeping pairs did not pay
     bool any_invalid = false;         // among the boxes of the last call
@@ -45,6 +47,7 @@ struct BroadPhase::Impl {
              bool list_rejected);
 
 private:
+    void listed(std::uint64_t count);
     template <class Search>
     bool measured(const char* algorithm, detail::BoxInput& boxes, const Search& search);
 };

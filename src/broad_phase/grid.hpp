@@ -71,7 +71,4 @@ private:
     std::uint32_t cells_ = 0, spare_ = 0;
 };
 
-/// The maker of the registry's row.
-std::unique_ptr<BroadPhaseAlgorithm> make_grid(Device* device, const BroadPhaseOptions& options);
-
 }  // namespace clinch::detail

@@ -15,16 +15,31 @@ namespace clinch {
 
 struct StepResult::Impl {
     Impl(Context& context, const PipelineOptions& options)
-        : broad(context, options.broad_phase), measure(options.broad_phase.measure_stages), result(*this) {}
+        : broad(context, without_events(options.broad_phase)),
+          measure(options.broad_phase.measure_stages),
+          tell_events(options.broad_phase.events),
+          result(*this) {
+        if (tell_events) BroadPhase checks_options(context, options.broad_phase);
+    }
+    // Events are those of the pairs with planes, told here.
+    static BroadPhaseOptions without_events(BroadPhaseOptions options) {
+        options.events = false;
+        return options;
+    }
 
     BroadPhase broad;
-    bool measure;
+    bool measure, tell_events;
+    detail::PairEvents events;
     std::optional<detail::DeviceBounds> device_bounds;
     std::optional<detail::HostBounds> host_bounds;
     detail::PlanePairs planes;
     std::uint64_t filter_version = 0;  // names the filters of a scene for the broad phase; 0: none seen
     std::uint64_t scene_filter_version = 0;
     std::shared_ptr<const int> scene_identity;
+    bool filters_changed = false;                 // since the last step
+    std::shared_ptr<const int> stepped_identity;  // of the scene of the last step, if it succeeded
+    std::uint64_t stepped_version = 0;
+    std::size_t stepped_rows = 0;
 
     View<const Pair> pairs;
     std::vector<Pair> merged;  // holds `pairs` when planes added to them
@@ -35,7 +50,10 @@ struct StepResult::Impl {
     StepResult result;
 
     void step(const Scene& scene);
+    bool nothing_changed(const Scene& scene) const;
+    void step_again();
     void start_afresh();
+    View<const Pair> find_changed(const detail::AlgorithmRow& row, const detail::FilterInput& filters);
     detail::FilterInput filters(const Scene& scene);
     View<const Pair> find_on_device(const Scene& scene, const detail::AlgorithmRow& row, std::size_t& changed);
     View<const Pair> find_on_host(const Scene& scene, const detail::AlgorithmRow& row, std::size_t& changed);
@@ -52,15 +70,18 @@ void StepResult::Impl::start_afresh() {
     rows = 0;
     on_device = false;
     scene_identity.reset();
+    stepped_identity.reset();
 }
 
 // The filters of a scene, under a number that changes when they may have.
 detail::FilterInput StepResult::Impl::filters(const Scene& scene) {
+    filters_changed = false;
     if (scene.impl().filters_default()) return {};
     if (scene_identity != scene.impl().identity || scene_filter_version != scene.filter_version()) {
         scene_identity = scene.impl().identity;
         scene_filter_version = scene.filter_version();
         ++filter_version;
+        filters_changed = true;
     }
     const SceneColumns columns = scene.columns();
     return {{columns.group.data(), columns.mask.data(), columns.motion.data()}, filter_version};
@@ -78,8 +99,21 @@ View<const Pair> StepResult::Impl::find_on_device(const Scene& scene, const deta
     device_bounds->compute();
     if (measure) device.finish();
     report.ms.bounds = bounds.ms();
-    detail::BoxInput input(device, device_bounds->boxes().handle(), 0, static_cast<std::uint32_t>(rows));
-    return broad.impl().find(row, input, filters(scene), false);
+    return find_changed(row, filters(scene));
+}
+
+// The pairs of the boxes on the device, by what the last upload changed if that pays.
+View<const Pair> StepResult::Impl::find_changed(const detail::AlgorithmRow& row, const detail::FilterInput& filters) {
+    BroadPhase::Impl& impl = broad.impl();
+    const View<const std::uint32_t> sent = device_bounds->sent();
+    detail::BoxInput input(impl.device(), device_bounds->boxes().handle(), 0, static_cast<std::uint32_t>(rows));
+    if (impl.listed_boxes == rows && stepped_rows == rows) {
+        if (sent.empty() && !filters_changed) return impl.same_again();
+        if (impl.steps_pay(row, rows, sent.size()) &&
+            (impl.step(input, {sent, nullptr, filters_changed}, filters) || impl.begin_steps(input, filters)))
+            return impl.pairs.view();
+    }
+    return impl.find(row, input, filters, false);
 }
 
 View<const Pair> StepResult::Impl::find_on_host(const Scene& scene, const detail::AlgorithmRow& row,
@@ -113,8 +147,28 @@ void StepResult::Impl::add_plane_pairs(const Scene& scene) {
     report.ms.broad += watch.ms();
 }
 
+bool StepResult::Impl::nothing_changed(const Scene& scene) const {
+    return stepped_identity != nullptr && stepped_identity == scene.impl().identity &&
+           stepped_version == scene.version();
+}
+
+// The last step's result once more.
+void StepResult::Impl::step_again() {
+    report.ms = {};
+    report.box_tests = 0;
+    report.skipped = {};
+    report.skipped.bounds = rows;
+    report.skipped.unchanged = rows;
+    events.same_again();
+}
+
 void StepResult::Impl::step(const Scene& scene) {
     const detail::Stopwatch total;
+    if (nothing_changed(scene)) {
+        step_again();
+        report.ms.total = total.ms();
+        return;
+    }
     pairs = {};
     boxes_read.reset();
     rows = scene.row_count();
@@ -136,6 +190,10 @@ void StepResult::Impl::step(const Scene& scene) {
     add_plane_pairs(scene);
     report.bodies = scene.body_count();
     report.pairs = pairs.size();
+    if (tell_events) events.update(pairs);
+    stepped_identity = scene.impl().identity;
+    stepped_version = scene.version();
+    stepped_rows = rows;
     report.ms.total = total.ms();
 }
 
@@ -150,6 +208,12 @@ View<const Aabb> StepResult::Impl::boxes() {
 
 View<const Pair> StepResult::pairs() const {
     return impl_->pairs;
+}
+View<const Pair> StepResult::added() const noexcept {
+    return impl_->events.added();
+}
+View<const Pair> StepResult::removed() const noexcept {
+    return impl_->events.removed();
 }
 View<const Aabb> StepResult::boxes() const {
     return impl_->boxes();

@@ -47,6 +47,8 @@ public:
     /// removed, rejected), and shapes. Returns the number of rows sent; all rows when the scene is another
     /// one or has outgrown the buffer. Throws Error; the next call then sends everything.
     std::size_t upload(const Scene& scene);
+    /// The rows that the last upload sent, ascending; valid until the next.
+    View<const std::uint32_t> sent() const noexcept { return sent_; }
     /// Enqueues the kernel for the rows sent by the last upload. No rows, or a second time: nothing.
     /// Throws Error; the next upload then sends everything.
     void compute();
@@ -65,7 +67,8 @@ private:
     Buffer records_, shapes_, vertices_, boxes_;
     std::vector<BodyRecord> staging_;
     std::uint64_t shapes_sent_ = 0;  // scene version up to which shapes were sent; 0: none
-    std::size_t pending_ = 0;        // rows sent whose boxes are not computed yet
+    View<const std::uint32_t> sent_;
+    std::size_t pending_ = 0;  // rows sent whose boxes are not computed yet
 };
 
 /// The same boxes, byte for byte, computed on the host.

@@ -26,6 +26,7 @@ void check_vertex_count(std::uint32_t count, const DeviceInfo& info) {
 std::size_t DeviceBounds::upload(const Scene& scene) {
     if (pending_ != 0) tracker_.forget();  // rows of the upload before were never computed
     pending_ = 0;
+    sent_ = {};
     if (!tracker_.knows(scene)) shapes_sent_ = 0;
     try {
         const bool grown = grow(boxes_, scene.row_count() * sizeof(Aabb), "boxes");
@@ -33,6 +34,7 @@ std::size_t DeviceBounds::upload(const Scene& scene) {
         if (!rows.empty()) send_rows(scene, rows);
         tracker_.seen(scene);
         pending_ = rows.size();
+        sent_ = rows;
     } catch (...) {
         tracker_.forget();
         throw;
