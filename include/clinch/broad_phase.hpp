@@ -23,7 +23,8 @@ enum class Order {
 };
 
 struct BroadPhaseOptions {
-    /// A name of broad_phase_names(), or "auto": chosen at each call from the number of boxes.
+    /// A name of broad_phase_names(), or "auto": chosen at each call from the number of boxes, how many
+    /// pairs they had in the last call, and whether there is a device.
     std::string algorithm = "auto";
     Order order = Order::Sorted;
     /// More pairs than this is Error LimitExceeded, which names the true count. Nothing is ever cut off.

@@ -61,7 +61,9 @@ BroadPhase::Impl::Impl(Context& c, BroadPhaseOptions o) : context(c.impl()), opt
 
 const detail::AlgorithmRow& BroadPhase::Impl::choose(std::uint64_t count) const {
     if (options.algorithm != "auto") return detail::algorithm_named(options.algorithm);
-    return detail::choose_algorithm(count, context.infos.empty() ? nullptr : &context.infos[context.primary()]);
+    const std::uint64_t last_pairs = count == report.bodies ? report.pairs : 0;
+    return detail::choose_algorithm(count, last_pairs,
+                                    context.infos.empty() ? nullptr : &context.infos[context.primary()]);
 }
 
 detail::Device& BroadPhase::Impl::device() const {

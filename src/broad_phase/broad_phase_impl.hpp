@@ -26,7 +26,7 @@ struct BroadPhase::Impl {
     std::uint64_t listed_boxes = 0;   // boxes of the last call, if `pairs` is its list; else 0
 
     Impl(Context& c, BroadPhaseOptions o);
-    /// The algorithm for `count` boxes.
+    /// The algorithm for `count` boxes, given what the last report says.
     const detail::AlgorithmRow& choose(std::uint64_t count) const;
     /// The device that algorithms work on; opens it.
     detail::Device& device() const;

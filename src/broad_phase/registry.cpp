@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include "clinch/error.hpp"
@@ -26,11 +27,19 @@ const AlgorithmRow rows[] = {
     {"sweep3", true, false, make_sweep3},
 };
 
-// Up to here the host is done before a device has started: launching and waiting cost about as much as
-// this many boxes against each other.
-constexpr std::uint64_t host_boxes = 500;
-// Up to here testing all pairs costs less than sorting boxes into cells.
-constexpr std::uint64_t brute_boxes = 2000;
+// The choice of "auto", first row that fits. Boxes, and pairs that the last call found a box (0 at the first): many
+// pairs tell of a crowd, where the host has too much to test. Where keeping pairs from call to call pays, and it was
+// told what changed, BroadPhase takes the incremental path before it comes here.
+struct Preference {
+    std::uint64_t boxes_up_to, pairs_a_box_up_to;
+    const char* algorithm;
+};
+constexpr std::uint64_t any = UINT64_MAX;
+constexpr Preference preferences[] = {
+    {250, any, "host-sweep"},  // done before a device has started
+    {2500, 50, "host-sweep"},
+    {any, any, "bvh"},
+};
 
 }  // namespace
 
@@ -51,10 +60,12 @@ bool runs_on(const AlgorithmRow& row, const DeviceInfo& device) {
     return !row.long_loops || most_loop_iterations(device) == std::numeric_limits<std::uint32_t>::max();
 }
 
-const AlgorithmRow& choose_algorithm(std::uint64_t count, const DeviceInfo* device) {
-    if (device == nullptr || count <= host_boxes) return algorithm_named("host-brute");
-    const AlgorithmRow& grid = algorithm_named("grid");
-    return count > brute_boxes && runs_on(grid, *device) ? grid : algorithm_named("brute");
+const AlgorithmRow& choose_algorithm(std::uint64_t count, std::uint64_t last_pairs, const DeviceInfo* device) {
+    if (device == nullptr) return algorithm_named("host-sweep");
+    for (const Preference& row : preferences)
+        if (count <= row.boxes_up_to && last_pairs / std::max<std::uint64_t>(count, 1) <= row.pairs_a_box_up_to)
+            return algorithm_named(row.algorithm);
+    return algorithm_named("brute");  // not reached: the last row fits all
 }
 
 void check_limit(std::uint64_t pairs, const BroadPhaseOptions& options) {

@@ -21,7 +21,7 @@ bool finds_the_pair(clinch::Context& context, const char* algorithm) {
 
 int main() {
     clinch::Context host = clinch::Context::host_only();
-    if (!finds_the_pair(host, "host-brute")) return 1;
+    if (!finds_the_pair(host, "host-sweep")) return 1;
     if (clinch::list_devices().empty()) return 0;
     clinch::Context context;
     return finds_the_pair(context, "brute") ? 0 : 1;

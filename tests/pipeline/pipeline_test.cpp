@@ -175,7 +175,7 @@ TEST_CASE("a scene of 5 bodies opens no device and builds no kernel", "[device][
     Pipeline pipeline(context);
     const StepResult& result = pipeline.step(scene);
     CHECK(result.pairs().size() == 4);
-    CHECK(result.report().algorithm == "host-brute");
+    CHECK(result.report().algorithm == "host-sweep");
     for (const DeviceReport& report : context.report()) {
         CHECK_FALSE(report.opened);
         CHECK(report.modules_built.empty());

@@ -167,7 +167,7 @@ TEST_CASE("statistics of five bodies show that nothing was built for them", "[pr
     CHECK(stats["pairs"] == 5);
     CHECK(stats["contacts"] == 0);
     CHECK(stats["frames"] == 1);
-    CHECK(stats["algorithm"] == "host-brute");
+    CHECK(stats["algorithm"] == "host-sweep");
     CHECK(stats["rejected"].empty());
     CHECK(stats["tolerance_missed"] == 0);
     REQUIRE_FALSE(stats["devices"].empty());
