@@ -25,6 +25,9 @@ struct Skipped {
     std::uint64_t unchanged = 0;  ///< boxes the broad phase did not look at since they did not change
     /// Boxes that changed but stayed within their fattened box: only their pairs were tested again.
     std::uint64_t inside = 0;
+    std::uint64_t still = 0;  ///< bodies that cannot move whose structure was kept from the last call
+    // Pairs of two bodies that cannot move are in neither count where the broad phase did not test them at all, as
+    // `bvh` does among many bodies.
     std::uint64_t pairs_filtered = 0;  ///< overlapping pairs dropped by group and mask
     std::uint64_t static_pairs = 0;    ///< overlapping pairs dropped since neither body can move
 };
@@ -39,6 +42,9 @@ struct Report {
     Skipped skipped;
     std::vector<Rejection> rejected;      ///< ascending by body
     std::uint64_t peak_device_bytes = 0;  ///< most memory held on devices so far, summed over them
+    /// Most host memory so far of what grows with boxes and pairs and is no device's memory: lists of pairs, and what
+    /// is kept of them from call to call.
+    std::uint64_t peak_host_bytes = 0;
 };
 
 }  // namespace clinch

@@ -88,11 +88,15 @@ bool BroadPhase::Impl::measured(const char* algorithm, detail::BoxInput& boxes, 
     report.box_tests = counts.box_tests;
     report.algorithm = algorithm;
     report.skipped.inside = counts.boxes_inside;
+    report.skipped.still = counts.still;
     report.skipped.pairs_filtered = counts.pairs_filtered;
     report.skipped.static_pairs = counts.static_pairs;
     any_invalid = counts.invalid_boxes;
     for (const auto& opened : context.devices)
         if (opened != nullptr) report.peak_device_bytes += opened->report().peak_bytes;
+    most_host_bytes = std::max<std::uint64_t>(
+        most_host_bytes, pairs.host_bytes() + events.host_bytes() + (incremental ? incremental->host_bytes() : 0));
+    report.peak_host_bytes = most_host_bytes;
     report.ms.total = total.ms();
     return true;
 }

@@ -21,6 +21,7 @@ struct BroadPhase::Impl {
     detail::PairList pairs;                            // after `made`, whose buffers it may map: it ends first
     detail::PairEvents events;                         // kept up to date if the options ask for it
     Report report;
+    std::uint64_t most_host_bytes = 0;
     std::uint64_t steps_refused = 0;  // number of boxes for which keeping pairs did not pay
     bool any_invalid = false;         // among the boxes of the last call
     std::uint64_t listed_boxes = 0;   // boxes of the last call, if `pairs` is its list; else 0

@@ -28,6 +28,10 @@ public:
     /// Whether update() may be called: build() succeeded and nothing was forgotten since.
     bool valid() const noexcept { return bodies_ != 0; }
     void forget() noexcept { bodies_ = 0; }
+    std::size_t host_bytes() const noexcept {
+        return extra_.capacity() * sizeof(Pair) + filter_rows_.capacity() * sizeof(FilterRow) +
+               spare_entry_.capacity() * sizeof(std::uint32_t) + left_now_.capacity() * sizeof(std::uint64_t);
+    }
     /// Begins with these boxes. False, with nothing found, when keeping pairs does not pay here: next to no boxes, or
     /// very many pairs a body.
     bool build(BoxInput& boxes, const FilterInput& filters, PairList& pairs, FindCounts& counts);

@@ -23,6 +23,9 @@ public:
         last_.clear();
         same_again();
     }
+    std::size_t host_bytes() const noexcept {
+        return (last_.capacity() + added_.capacity() + removed_.capacity()) * sizeof(Pair);
+    }
     View<const Pair> added() const noexcept { return added_; }      ///< ascending
     View<const Pair> removed() const noexcept { return removed_; }  ///< ascending
 

@@ -187,6 +187,7 @@ void StepResult::Impl::step(const Scene& scene) {
     report.ms.broad = found.ms.broad;
     report.ms.download = found.ms.download;
     report.peak_device_bytes = found.peak_device_bytes;
+    report.peak_host_bytes = found.peak_host_bytes;
     add_plane_pairs(scene);
     report.bodies = scene.body_count();
     report.pairs = pairs.size();
