@@ -18,6 +18,7 @@ struct FindCounts {
     std::uint64_t box_tests = 0;
     std::uint64_t pairs_filtered = 0;
     std::uint64_t static_pairs = 0;
+    std::uint64_t still = 0;         ///< bodies that cannot move whose structure was kept from the last call
     std::uint64_t boxes_inside = 0;  ///< changed boxes that stayed within their fattened box
     double download_ms = 0.0;        ///< spent making pairs readable on the host
     bool invalid_boxes = false;      ///< it met boxes that are no boxes; which, the caller finds out
