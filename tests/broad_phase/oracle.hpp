@@ -44,7 +44,7 @@ inline std::vector<Pair> pairs_by_hand(const std::vector<Aabb>& boxes, const Fil
 }
 
 /// Sorted on x, each box against those that begin before it ends. For many boxes.
-inline std::vector<Pair> pairs_by_sweep(const std::vector<Aabb>& boxes) {
+inline std::vector<Pair> pairs_by_sweep(const std::vector<Aabb>& boxes, const FilterColumns& filters = {}) {
     std::vector<std::uint32_t> order;
     for (std::uint32_t i = 0; i < boxes.size(); ++i)
         if (is_box(boxes[i])) order.push_back(i);
@@ -53,7 +53,7 @@ inline std::vector<Pair> pairs_by_sweep(const std::vector<Aabb>& boxes) {
     std::vector<Pair> pairs;
     for (std::size_t i = 0; i < order.size(); ++i)
         for (std::size_t j = i + 1; j < order.size() && boxes[order[j]].min[0] <= boxes[order[i]].max[0]; ++j)
-            if (!apart(boxes[order[i]], boxes[order[j]]))
+            if (!apart(boxes[order[i]], boxes[order[j]]) && passes(filters, order[i], order[j]))
                 pairs.push_back({std::min(order[i], order[j]), std::max(order[i], order[j])});
     std::sort(pairs.begin(), pairs.end());
     return pairs;

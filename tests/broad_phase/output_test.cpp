@@ -16,11 +16,11 @@ namespace {
 
 constexpr std::size_t piece = 500;  // pairs
 
-void with_each(Order order, const std::function<void(BroadPhase&)>& check) {
+void with_each(Order order, const std::function<void(BroadPhase&)>& check, std::uint32_t lanes = 8) {
     for (std::uint32_t device = 0; device < list_devices().size(); ++device)
         for (const std::string& name : test::names_for(list_devices()[device])) {
             INFO("algorithm " << name << ", device " << device);
-            Context context = test::with_lanes(device, 8);
+            Context context = test::with_lanes(device, lanes);
             BroadPhaseOptions options;
             options.algorithm = name;
             options.order = order;
@@ -64,16 +64,30 @@ TEST_CASE("streams hand over every pair once, in pieces", "[device]") {
     }
 }
 
-TEST_CASE("counts are those of the list, and store nothing", "[device][small]") {
-    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 900, 8);
+namespace {
+
+void check_counts(std::size_t n, std::uint32_t lanes) {
+    const std::vector<Aabb> boxes = scenes::make_boxes("density", n, 8);
     const std::size_t expected = test::pairs_by_hand(boxes).size();
-    with_each(Order::Sorted, [&](BroadPhase& broad_phase) {
+    REQUIRE(expected > n / 2);
+    const auto check = [&](BroadPhase& broad_phase) {
         CHECK(broad_phase.count(boxes) == expected);
         CHECK(broad_phase.report().pairs == expected);
         CHECK(broad_phase.find(boxes).size() == expected);
         CHECK(broad_phase.count(boxes) == expected);
         CHECK(broad_phase.count(View<const Aabb>{}) == 0);
-    });
+    };
+    with_each(Order::Sorted, check, lanes);
+}
+
+}  // namespace
+
+TEST_CASE("counts are those of the list, and store nothing", "[device]") {
+    check_counts(2500, 8);
+}
+
+TEST_CASE("counts are those of the list, few", "[device][small]") {
+    check_counts(250, 1);
 }
 
 TEST_CASE("what the taker of a stream throws ends the call and nothing else", "[device]") {
