@@ -16,13 +16,17 @@
 // and tested as whole vectors; without, two blocks are compared box by box from the side where fewer boxes reach
 // the other block's box.
 // The state of a traversal is one word of bits a level: the nodes of the current blocks still to visit.
+// A tree may hold some of the boxes only. Where many bodies cannot move, they have a tree of their own, which is kept
+// while their boxes stay as they are and which only the blocks of the other tree search: full traversal, as blocks of
+// two trees are never the same (static and dynamic trees: Bullet's btDbvtBroadphase).
 //
+//   bvh_compare boxes of some bodies -> whether they are those of the last call, which are kept
 //   bvh_keys    boxes (rows) -> key: class of size, then place of the centre on the curve
 //   bvh_crowded sorted keys -> how many blocks lie in one cell, as where finer cells are needed
 //   bvh_leaves  boxes, order (payload of the sorted keys) -> blocks of boxes, and level 1
 //   bvh_level   one level from the one below
 //               both: -> measures (one a work-item): the size of nodes, and whether there is a box that is no box
-//   bvh_search  tree, order -> pairs
+//   bvh_search  tree, order, the tree to look into (the same or another), its order -> pairs
 // What is no box has its corners exchanged, at infinity: it overlaps nothing and adds nothing to a node.
 // Defines: LANES, FILTERS; WIDTH (LANES, at least 8): boxes a block; KEY (uint): type of a key, uint or ulong;
 // WINDOW (0): blocks that a task may look at where loops end early (see most_loop_iterations), 0: all
@@ -158,12 +162,36 @@ inline uintN size_classes(const float* columns, constant BvhFrame* f) {
     return min(size, (uintN)(f->most_class));
 }
 
-// Work-item i owns boxes [i LANES, (i + 1) LANES).
-kernel void bvh_keys(global const float* restrict boxes, ulong first, uint n, constant BvhFrame* f, global KEY* restrict keys) {
+// Work-item i compares bodies [i per_item, (i + 1) per_item) of `bodies`: whether a box, as three pairs of floats, is
+// another one than in the last call, to the bit. Keeps the boxes; with `fresh` none were kept before.
+kernel void bvh_compare(global const ulong* restrict boxes, ulong first, global const uint* restrict bodies, uint count,
+                        uint per_item, uint items, uint fresh, global ulong* restrict kept, global uint* restrict changed) {
+    uint item = get_global_id(0);
+    if (item >= items) return;
+    uint differs = fresh;
+    for (uint i = min((ulong)count, item * (ulong)per_item), end = min((ulong)count, i + (ulong)per_item); i < end; ++i) {
+        global const ulong* box = boxes + (first + bodies[i]) * 3;
+        global ulong* last = kept + i * (ulong)3;
+        ulong x = box[0], y = box[1], z = box[2];
+        if (!fresh && ((x ^ last[0]) | (y ^ last[1]) | (z ^ last[2])) == 0) continue;
+        differs = 1;
+        last[0] = x;
+        last[1] = y;
+        last[2] = z;
+    }
+    changed[item] = differs;
+}
+
+// Work-item i owns boxes [i LANES, (i + 1) LANES) of those whose numbers are in `order`, or of all if not `listed`.
+kernel void bvh_keys(global const float* restrict boxes, ulong first, uint n, constant BvhFrame* f,
+                     global const uint* restrict order, uint listed, global KEY* restrict keys) {
     uint at = get_global_id(0) * LANES;
     if (at >= n) return;
     float columns[6 * LANES];
-    for (uint l = 0; l < LANES; ++l) put_row(columns, LANES, l, boxes + (first + min(at + l, n - 1)) * 6);
+    for (uint l = 0; l < LANES; ++l) {
+        uint i = min(at + l, n - 1);
+        put_row(columns, LANES, l, boxes + (first + (listed ? order[i] : i)) * 6);
+    }
     uintN x = cells_of(columns, 0, f), y = cells_of(columns, 1, f), z = cells_of(columns, 2, f);
     along_hilbert(f->class_shift / 3, &x, &y, &z);
     uint low[LANES], middle[LANES], high[LANES], size[LANES];
@@ -363,27 +391,27 @@ inline void test_candidates(global const float* tree, global const uint* order, 
     c->own = false;
 }
 
-// Block j against the box around block q.
-inline void visit_block(global const float* tree, constant BvhLevels* levels, global const uint* order, uint q, uint j,
-                        const BvhBox* box, Candidates* c, PairSink* sink) {
+// Block j of the other tree against the box around block q.
+inline void visit_block(global const float* tree, global const uint* order, uint q, global const float* other,
+                        global const uint* other_order, uint j, const BvhBox* box, Candidates* c, PairSink* sink) {
     if (c->count > MOST_CANDIDATES - WIDTH) test_candidates(tree, order, q, c, sink);
     for (uint s = 0; s < STEPS; ++s) {
-        global const float* p = tree + j * (ulong)BLOCK + s * LANES;
+        global const float* p = other + j * (ulong)BLOCK + s * LANES;
         uint bits = overlapping_lanes(p, box);
-        if (bits != 0) add_candidates(c, p, order + j * WIDTH + s * LANES, bits);
+        if (bits != 0) add_candidates(c, p, other_order + j * WIDTH + s * LANES, bits);
     }
     sink->counts.tests += WIDTH;
 }
 #else
-// Pairs of the boxes `rows` of block a with the boxes `columns` of block b. In one and the same block: of those
-// behind the row only.
-inline void test_rows(global const float* tree, global const uint* order, uint a, uint b, uint rows, uint columns,
-                      PairSink* sink) {
+// Pairs of the boxes `rows` of block a of one tree with the boxes `columns` of block b of another. If they are `own`,
+// one and the same block: of those behind the row only.
+inline void test_rows(global const float* tree, global const uint* order, uint a, uint rows, global const float* other,
+                      global const uint* other_order, uint b, uint columns, bool own, PairSink* sink) {
     global const float* block = tree + a * (ulong)BLOCK;
     sink->counts.tests += WIDTH * popcount(rows);
     for (uint s = 0; s < STEPS; ++s) {
         // Held here: what the sink writes could be anywhere, for all a compiler knows.
-        global const float* p = tree + b * (ulong)BLOCK + s * LANES;
+        global const float* p = other + b * (ulong)BLOCK + s * LANES;
         const floatN min_x = load_lanes(0, p), min_y = load_lanes(0, p + WIDTH), min_z = load_lanes(0, p + 2 * WIDTH);
         const floatN max_x = load_lanes(0, p + 3 * WIDTH), max_y = load_lanes(0, p + 4 * WIDTH), max_z = load_lanes(0, p + 5 * WIDTH);
         uint wanted = columns >> (s * LANES) & ALL_LANES;
@@ -393,23 +421,24 @@ inline void test_rows(global const float* tree, global const uint* order, uint a
             uintN m = as_mask((min_x <= (floatN)box.max_x) & (min_y <= (floatN)box.max_y) & (min_z <= (floatN)box.max_z) &
                               (max_x >= (floatN)box.min_x) & (max_y >= (floatN)box.min_y) & (max_z >= (floatN)box.min_z));
             uint hits = lane_bits(m) & wanted;
-            if (a == b) hits &= (0xfffffffeu << l) >> (s * LANES);
-            if (hits != 0) sink_put_lanes(sink, order + b * WIDTH + s * LANES, hits, order[a * WIDTH + l]);
+            if (own) hits &= (0xfffffffeu << l) >> (s * LANES);
+            if (hits != 0) sink_put_lanes(sink, other_order + b * WIDTH + s * LANES, hits, order[a * WIDTH + l]);
         }
     }
 }
 
-// Block q against block j; `box` is around q.
-inline void visit_block(global const float* tree, constant BvhLevels* levels, global const uint* order, uint q, uint j,
-                        const BvhBox* box, PairSink* sink) {
-    BvhBox other = box_in(tree + (levels->first[1] + j / WIDTH) * (ulong)BLOCK, j % WIDTH);
-    uint rows = overlapping(tree + q * (ulong)BLOCK, &other);
-    uint columns = overlapping(tree + j * (ulong)BLOCK, box);
+// Block q against block j of the other tree; `box` is around q.
+inline void visit_block(global const float* tree, global const uint* order, uint q, global const float* other,
+                        constant BvhLevels* other_levels, global const uint* other_order, uint j, const BvhBox* box, bool own,
+                        PairSink* sink) {
+    BvhBox other_box = box_in(other + (other_levels->first[1] + j / WIDTH) * (ulong)BLOCK, j % WIDTH);
+    uint rows = overlapping(tree + q * (ulong)BLOCK, &other_box);
+    uint columns = overlapping(other + j * (ulong)BLOCK, box);
     sink->counts.tests += 2 * WIDTH;
     if (popcount(rows) <= popcount(columns))
-        test_rows(tree, order, q, j, rows, columns, sink);
+        test_rows(tree, order, q, rows, other, other_order, j, columns, own, sink);
     else
-        test_rows(tree, order, j, q, columns, rows, sink);
+        test_rows(other, other_order, j, columns, tree, order, q, rows, own, sink);
 }
 #endif
 
@@ -428,27 +457,28 @@ inline uint nodes_to_visit(global const float* tree, constant BvhLevels* levels,
     return bits;
 }
 
-// Block q against the blocks [from, last] of level 0; from >= q.
-inline void search(global const float* tree, constant BvhLevels* levels, global const uint* order, uint q, uint from, uint last,
-                   PairSink* sink) {
+// Block q against the blocks [from, last] of level 0 of the other tree. If that is the `same`, from >= q.
+inline void search(global const float* tree, constant BvhLevels* levels, global const uint* order, uint q,
+                   global const float* other, constant BvhLevels* other_levels, global const uint* other_order, bool same,
+                   uint from, uint last, PairSink* sink) {
     BvhBox box = box_in(tree + (levels->first[1] + q / WIDTH) * (ulong)BLOCK, q % WIDTH);
 #if LANES > 1
     Candidates candidates;
     candidates.count = 0;
-    candidates.own = from == q;
-    if (from == q) {
+    candidates.own = same && from == q;
+    if (candidates.own) {
         for (uint s = 0; s < STEPS; ++s)
             add_candidates(&candidates, tree + q * (ulong)BLOCK + s * LANES, order + q * WIDTH + s * LANES, ALL_LANES);
         ++from;
     }
 #endif
     uint left[MOST_LEVELS];  // nodes still to visit
-    uint level = levels->top, block = 0;
-    left[level] = from <= last ? nodes_to_visit(tree, levels, level, 0, &box, from, last, sink) : 0;
+    uint level = other_levels->top, block = 0;
+    left[level] = from <= last ? nodes_to_visit(other, other_levels, level, 0, &box, from, last, sink) : 0;
     for (;;) {
         uint nodes = left[level];
         if (nodes == 0) {
-            if (level == levels->top) break;
+            if (level == other_levels->top) break;
             ++level;
             block /= WIDTH;
             continue;
@@ -458,13 +488,13 @@ inline void search(global const float* tree, constant BvhLevels* levels, global 
         if (level > 1) {
             block = node;
             --level;
-            left[level] = nodes_to_visit(tree, levels, level, block, &box, from, last, sink);
+            left[level] = nodes_to_visit(other, other_levels, level, block, &box, from, last, sink);
             continue;
         }
 #if LANES > 1
-        visit_block(tree, levels, order, q, node, &box, &candidates, sink);
+        visit_block(tree, order, q, other, other_order, node, &box, &candidates, sink);
 #else
-        visit_block(tree, levels, order, q, node, &box, sink);
+        visit_block(tree, order, q, other, other_levels, other_order, node, &box, same && node == q, sink);
 #endif
     }
 #if LANES > 1
@@ -472,17 +502,21 @@ inline void search(global const float* tree, constant BvhLevels* levels, global 
 #endif
 }
 
-// One task: one block; with WINDOW, one block against one window of blocks: task = window * blocks + block.
-kernel void bvh_search(global const float* restrict tree, constant BvhLevels* levels, global const uint* restrict order, SINK_PARAMS) {
+// One task: one block of the tree against the other tree, which may be the `same`; with WINDOW, against one window of
+// the other's blocks: task = window * blocks + block.
+kernel void bvh_search(global const float* restrict tree, constant BvhLevels* levels, global const uint* restrict order,
+                       global const float* restrict other, constant BvhLevels* other_levels, global const uint* restrict other_order,
+                       uint same, SINK_PARAMS) {
     PairSink sink = sink_begin(SINK_ARGS);
     for (uint task = sink_task(&sink); task < sink.task_end; task = sink_task(&sink)) {
 #if WINDOW
         uint window = task / levels->blocks, q = task - window * levels->blocks;
-        uint from = max(q, window * WINDOW), last = min(levels->blocks, (window + 1) * WINDOW) - 1;
-        if (from <= last) search(tree, levels, order, q, from, last, &sink);
+        uint from = window * WINDOW, last = min(other_levels->blocks, (window + 1) * WINDOW) - 1;
 #else
-        search(tree, levels, order, task, task, levels->blocks - 1, &sink);
+        uint q = task, from = 0, last = other_levels->blocks - 1;
 #endif
+        if (same) from = max(from, q);
+        if (from <= last) search(tree, levels, order, q, other, other_levels, other_order, same != 0, from, last, &sink);
     }
     sink_end(&sink);
 }

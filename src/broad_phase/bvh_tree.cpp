@@ -5,6 +5,8 @@
 #include <numeric>
 #include <string>
 
+#include "src/device/quirks.hpp"
+
 namespace clinch::detail {
 
 // As the struct of the same name in bvh.cl.
@@ -70,14 +72,19 @@ BvhTree::BvhTree(Device& device)
       sort32_(device),
       sort64_(device, RadixSort::Key::Bits64) {}
 
-// Work-items that share `nodes`: a few for each core, or enough to fill a GPU.
+// Work-items that share `nodes`: a few for each core, or enough to fill a GPU; and so many that no loop is too long
+// where loops end early.
 std::uint32_t BvhTree::items_for(std::uint32_t nodes) const {
     const DeviceInfo& info = device_.info();
-    return std::clamp(nodes, 1u, info.compute_units * (info.lanes > 1 ? 16u : 512u));
+    const std::uint32_t turns = 4 * width_ + 32 * (width_ / info.lanes);  // at most, for a block and its node
+    const std::uint32_t least = nodes / (most_loop_iterations(info) / turns) + 1;
+    return std::max(least, std::clamp(nodes, 1u, info.compute_units * (info.lanes > 1 ? 16u : 512u)));
 }
 
 // Numbers the blocks of all levels and makes room for them.
 void BvhTree::shape(std::uint32_t n) {
+    if (shaped_ == n) return;
+    shaped_ = 0;  // until all went well
     BvhLevels levels{};
     blocks_ = (n - 1) / width_ + 1;
     levels.blocks = blocks_;
@@ -96,6 +103,19 @@ void BvhTree::shape(std::uint32_t n) {
     device_.reserve(order_, std::size_t{blocks_} * width_ * sizeof(std::uint32_t), "the order of boxes");
     device_.reserve(measures_, level_first_.size() * items_for(blocks_ + width_) * sizeof(BvhMeasure),
                     "the measures of a tree");
+    shaped_ = n;
+}
+
+void BvhTree::hold(const std::vector<std::uint32_t>& bodies) {
+    n_ = 0;
+    shape(static_cast<std::uint32_t>(bodies.size()));
+    device_.write(order_, bodies.data(), bodies.size() * sizeof bodies[0]);
+    listed_ = true;
+}
+
+void BvhTree::hold_all() {
+    if (listed_) n_ = 0;
+    listed_ = false;
 }
 
 // Chooses the cells that the curve goes through and the classes of size; returns the bits of a key.
@@ -134,7 +154,7 @@ unsigned BvhTree::write_frame(const BoxStatistics& stats, bool finest) {
 
 // Sorts the boxes along the curve; with `finest`, through the smallest cells there are.
 void BvhTree::sort(BoxInput& boxes, const BoxStatistics& stats, bool finest) {
-    const std::uint32_t n = boxes.count();
+    const std::uint32_t n = shaped_;
     const unsigned bits = write_frame(stats, finest);
     wide_keys_ = bits > 32;
     KeyKernels& kernels = wide_keys_ ? kernels64_ : kernels32_;
@@ -143,9 +163,10 @@ void BvhTree::sort(BoxInput& boxes, const BoxStatistics& stats, bool finest) {
     if (!kernels.crowded) kernels.crowded = device_.kernel("broad_phase/bvh", "bvh_crowded", defines);
     device_.reserve(keys_, std::size_t{n} * (wide_keys_ ? sizeof(std::uint64_t) : sizeof(std::uint32_t)),
                     "the keys of boxes");
-    device_.launch_items(kernels.keys.args(boxes.on(device_), boxes.first(), n, frame_, keys_),
-                         n / device_.info().lanes + 1);
-    (wide_keys_ ? sort64_ : sort32_).sort(keys_, order_, n, bits, true);
+    device_.launch_items(
+        kernels.keys.args(boxes.on(device_), boxes.first(), n, frame_, order_, listed_ ? 1u : 0u, keys_),
+        n / device_.info().lanes + 1);
+    (wide_keys_ ? sort64_ : sort32_).sort(keys_, order_, n, bits, !listed_);
 }
 
 // Whether so many blocks lie in a single cell that searching them, each against each if they are all in the same, would
@@ -180,7 +201,7 @@ void BvhTree::build(BoxInput& boxes) {
 }
 
 // Computes all blocks of boxes and all nodes in the order there is. Returns the sum of the sizes of nodes. Waits.
-double BvhTree::fit(BoxInput& boxes) {
+double BvhTree::fit(BoxInput& boxes, std::uint32_t n) {
     if (!leaves_kernel_) {
         leaves_kernel_ = device_.kernel("broad_phase/bvh", "bvh_leaves");
         level_kernel_ = device_.kernel("broad_phase/bvh", "bvh_level");
@@ -192,8 +213,8 @@ double BvhTree::fit(BoxInput& boxes) {
         const std::uint32_t nodes = (level_first_[level + 1] - level_first_[level]) * width_;
         const std::uint32_t items = items_for(nodes), per_item = (nodes - 1) / items + 1;
         if (level == 1)
-            leaves_kernel_.args(boxes.on(device_), boxes.first(), order_, boxes.count(), frame_, below, level_first_[1],
-                                nodes, per_item, items, tree_, first_measure, measures_);
+            leaves_kernel_.args(boxes.on(device_), boxes.first(), order_, n, frame_, below, level_first_[1], nodes,
+                                per_item, items, tree_, first_measure, measures_);
         else
             level_kernel_.args(frame_, level_first_[level - 1], below, level_first_[level], nodes, per_item, items,
                                tree_, first_measure, measures_);
@@ -212,18 +233,18 @@ double BvhTree::fit(BoxInput& boxes) {
 }
 
 void BvhTree::update(BoxInput& boxes) {
-    const bool try_old_order = n_ == boxes.count() && !worn_;
-    const bool same_shape = n_ == boxes.count();
+    const std::uint32_t n = listed_ ? shaped_ : boxes.count();
+    const bool try_old_order = n_ == n && !worn_;
     n_ = 0;  // until all went well
-    kept_order_ = try_old_order && fit(boxes) <= most_growth * size_when_built_;
+    kept_order_ = try_old_order && fit(boxes, n) <= most_growth * size_when_built_;
     if (!kept_order_) {
-        if (!same_shape) shape(boxes.count());
+        shape(n);
         build(boxes);
-        size_when_built_ = fit(boxes);
+        size_when_built_ = fit(boxes, n);
         tests_when_built_ = 0;
         worn_ = false;
     }
-    n_ = boxes.count();
+    n_ = n;
 }
 
 void BvhTree::searched(std::uint64_t box_tests) {

@@ -21,9 +21,14 @@ class BvhTree {
 public:
     explicit BvhTree(Device& device);
 
-    /// Makes the tree hold `boxes`, at least two. The order of the last call is kept while the number of boxes
-    /// is the same and the tree has not become much worse than it was when built; else the boxes are sorted again.
-    /// Waits. Cost: reads the boxes once; building reads them twice more and sorts them.
+    /// From the next update() on the tree holds the boxes of these bodies only, at least one, until the next hold().
+    void hold(const std::vector<std::uint32_t>& bodies);
+    /// From the next update() on the tree holds all boxes, as at first.
+    void hold_all();
+    /// Makes the tree hold `boxes`, at least two if all are held. The order of the last call is kept while the
+    /// bodies held, or if all are held their number, are the same and the tree has not become much worse than it was
+    /// when built; else the boxes are sorted again. Waits. Cost: reads the boxes once; building reads them twice more
+    /// and sorts them. When it throws, a hold() is to be said again.
     void update(BoxInput& boxes);
     /// Tells the box tests that a search of the tree took: the next update builds anew when they have become many more
     /// than right after the last build.
@@ -48,7 +53,7 @@ private:
     unsigned write_frame(const BoxStatistics& stats, bool finest);
     void sort(BoxInput& boxes, const BoxStatistics& stats, bool finest);
     bool crowded();
-    double fit(BoxInput& boxes);
+    double fit(BoxInput& boxes, std::uint32_t n);
     std::uint32_t items_for(std::uint32_t nodes) const;
 
     Device& device_;
@@ -63,11 +68,13 @@ private:
     Buffer frame_, levels_, keys_, order_, tree_, measures_;
     std::vector<std::uint32_t> level_first_;  // block where each level begins; the last is the number of blocks
     std::uint32_t n_ = 0;                     // boxes of the last update that went well, else 0
+    std::uint32_t shaped_ = 0;                // boxes that there is room for in blocks_ blocks
     std::uint32_t blocks_ = 0;
     double size_when_built_ = 0.0;
     std::uint64_t tests_when_built_ = 0;
     unsigned finest_builds_ = 0;  // builds to come that take the finest cells at once
     bool wide_keys_ = false;      // the keys sorted last have 64 bits
+    bool listed_ = false;         // the tree holds the boxes whose numbers are in order_, shaped_ in all
     bool worn_ = false, kept_order_ = false, any_invalid_ = false;
 };
 
