@@ -1,8 +1,6 @@
 #include "src/broad_phase/pair_events.hpp"
 
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <iterator>
 #include <set>
 
 #include "bench/scenes/boxes.hpp"
@@ -10,21 +8,14 @@
 #include "clinch/error.hpp"
 #include "tests/broad_phase/oracle.hpp"
 #include "tests/device/devices.hpp"
+#include "tests/pair_lists.hpp"
 #include "tests/random.hpp"
 
 using namespace clinch;
+using test::copy;
+using test::without;
 
 namespace {
-
-std::vector<Pair> without(const std::vector<Pair>& all, const std::vector<Pair>& some) {
-    std::vector<Pair> rest;
-    std::set_difference(all.begin(), all.end(), some.begin(), some.end(), std::back_inserter(rest));
-    return rest;
-}
-
-std::vector<Pair> copy(View<const Pair> pairs) {
-    return {pairs.begin(), pairs.end()};
-}
 
 std::vector<Pair> random_list(std::size_t count, test::Random& random) {
     std::set<Pair> pairs;

@@ -1,26 +1,17 @@
 // Step after step of one scene in which little changes.
-#include <algorithm>
 #include <catch2/catch.hpp>
-#include <iterator>
 #include <vector>
 
 #include "clinch/pipeline.hpp"
 #include "tests/device/devices.hpp"
+#include "tests/pair_lists.hpp"
 #include "tests/random.hpp"
 
 using namespace clinch;
+using test::copy;
+using test::without;
 
 namespace {
-
-std::vector<Pair> copy(View<const Pair> pairs) {
-    return {pairs.begin(), pairs.end()};
-}
-
-std::vector<Pair> without(const std::vector<Pair>& all, const std::vector<Pair>& some) {
-    std::vector<Pair> rest;
-    std::set_difference(all.begin(), all.end(), some.begin(), some.end(), std::back_inserter(rest));
-    return rest;
-}
 
 Scene spheres(std::size_t n, test::Random& random) {
     Scene scene;
@@ -82,5 +73,5 @@ TEST_CASE("steps with few changes are those of a fresh search, with events", "[d
         if (frame == 8) scene.add_body(scene.body({41}));
         change(scene, frame == 9 ? 6000 : 60, frame % 3 == 1, random);
     }
-    CHECK((kept >= 6 || list_devices()[0].quirks.size() > 0));
+    CHECK((kept >= 6 || !list_devices()[0].quirks.empty()));
 }
