@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <limits>
-#include <utility>
+#include <string>
 #include <vector>
 
 #include "clinch/aabb.hpp"
@@ -11,12 +11,22 @@
 namespace clinch::detail {
 namespace {
 
-constexpr std::uint32_t buckets = 256;  // BUCKETS of the kernel
-
 std::uint32_t bits_of(std::uint32_t value) {
     std::uint32_t bits = 0;
     for (; value != 0; value >>= 1) ++bits;
     return bits;
+}
+
+// Counters and lines of the buckets are private to a work-item: a CPU has them in its caches, a GPU has little room.
+std::uint32_t most_bucket_bits(const DeviceInfo& info) {
+    return info.lanes > 1 ? 12 : 8;
+}
+
+// Buckets that keep all cores busy and fit in their caches, but are not so many that they are short.
+std::uint64_t buckets_wanted(const DeviceInfo& info, std::uint64_t count) {
+    if (info.lanes == 1) return count / 1024;
+    return std::min({std::max<std::uint64_t>(count / 32768, 16 * std::uint64_t{info.compute_units}), count / 1024,
+                     std::uint64_t{1024}});
 }
 
 }  // namespace
@@ -29,37 +39,59 @@ void PairSort::sort_on_host(const Buffer& pairs, std::uint64_t count) {
     device_.write(pairs, sorted.data(), count * sizeof(Pair));
 }
 
-void PairSort::sort(Buffer& pairs, std::uint64_t count, std::uint32_t bodies) {
+PairSort::Kernels& PairSort::kernels(bool packed) {
+    Kernels& kernels = packed ? packed_ : wide_;
+    if (kernels.count) return kernels;
+    const DeviceInfo& info = device_.info();
+    const std::string defines = std::string(packed ? "-DKEY=uint" : "-DKEY=ulong") +
+                                " -DMAX_BUCKETS=" + std::to_string(1u << most_bucket_bits(info)) +
+                                (info.lanes > 1 ? " -DDIGIT_BITS=11" : " -DDIGIT_BITS=8");
+    kernels.count = device_.kernel("primitives/pair_sort", "pair_count", defines);
+    kernels.scatter = device_.kernel("primitives/pair_sort", "pair_scatter", defines);
+    kernels.buckets = device_.kernel("primitives/pair_sort", "pair_buckets", defines);
+    return kernels;
+}
+
+PairSort::Shape PairSort::shape_for(std::uint64_t count, std::uint32_t bodies) const {
+    const DeviceInfo& info = device_.info();
+    const std::uint32_t bits = std::max(1u, bits_of(bodies - 1));
+    const std::uint32_t least = bits - std::min(bits, most_bucket_bits(info));
+    const auto buckets_at = [&](std::uint32_t shift) { return ((bodies - 1) >> shift) + 1; };
+    std::uint32_t shift = bits - 1;
+    for (const std::uint64_t wanted = buckets_wanted(info, count); shift > least && buckets_at(shift) < wanted;)
+        --shift;
+    // Keys of 32 bits are worth more buckets than wanted, unless most of those would be empty.
+    const std::uint32_t fits = bits < 32 ? 32 - bits : 0;
+    if (shift > fits && fits >= least && count / 4 >= buckets_at(fits)) shift = fits;
+    const auto runs = static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(count / 1024, 1, std::uint64_t{info.compute_units} * (info.lanes > 1 ? 2 : 64)));
+    return {runs, buckets_at(shift), shift, bits, shift + bits <= 32};
+}
+
+void PairSort::sort(const Buffer& pairs, std::uint64_t count, std::uint32_t bodies) {
     if (count < 2) return;
     if (most_loop_iterations(device_.info()) != std::numeric_limits<std::uint32_t>::max()) {
         sort_on_host(pairs, count);
         return;
     }
-    if (!count_kernel_) {
-        count_kernel_ = device_.kernel("primitives/pair_sort", "pair_count");
-        scatter_kernel_ = device_.kernel("primitives/pair_sort", "pair_scatter");
-        buckets_kernel_ = device_.kernel("primitives/pair_sort", "pair_buckets");
-    }
-    const DeviceInfo& info = device_.info();
-    const std::uint32_t bits = std::max(1u, bits_of(bodies - 1));
-    const std::uint32_t shift = bits > 8 ? bits - 8 : 0;
-    const auto runs = static_cast<std::uint32_t>(
-        std::clamp<std::uint64_t>(count / 1024, 1, std::uint64_t{info.compute_units} * (info.lanes > 1 ? 2 : 64)));
-    const std::uint64_t per_run = (count + runs - 1) / runs;
-    const std::size_t table = std::size_t{buckets} * runs * sizeof(std::uint32_t);
-    device_.reserve(other_, pairs.bytes(), "the sort of pairs");
+    const Shape s = shape_for(count, bodies);
+    Kernels& k = kernels(s.packed);
+    const std::uint64_t per_run = (count + s.runs - 1) / s.runs;
+    const std::size_t table = std::size_t{s.buckets} * s.runs * sizeof(std::uint32_t);
+    // As long as the buffer of the pairs, so that it grows no more often than that one.
+    device_.reserve(keys_, pairs.bytes() / sizeof(Pair) * (s.packed ? sizeof(std::uint32_t) : sizeof(std::uint64_t)),
+                    "the sort of pairs");
     device_.reserve(counts_, table, "the counts of a sort");
     device_.reserve(offsets_, table, "the offsets of a sort");
 
     const std::size_t group = device_.group_size();
-    device_.launch(count_kernel_.args(pairs, count, per_run, runs, shift, counts_), (runs + group - 1) / group, group);
-    scan_.exclusive(counts_, buckets * runs, offsets_);
-    device_.launch(scatter_kernel_.args(pairs, count, per_run, runs, shift, offsets_, other_),
-                   (runs + group - 1) / group, group);
-    // What is left of a below the bucket's bits, and all of b.
-    const std::uint32_t key_bits = shift + bits;
-    device_.launch(buckets_kernel_.args(other_, pairs, count, offsets_, runs, bits, key_bits), buckets / group, group);
-    if ((key_bits + 7) / 8 % 2 == 0) std::swap(pairs, other_);
+    const std::size_t groups = (s.runs + group - 1) / group;
+    device_.launch(k.count.args(pairs, count, per_run, s.runs, s.buckets, s.shift, counts_), groups, group);
+    scan_.exclusive(counts_, s.buckets * s.runs, offsets_);
+    device_.launch(k.scatter.args(pairs, count, per_run, s.runs, s.buckets, s.shift, s.b_bits, offsets_, keys_), groups,
+                   group);
+    device_.launch(k.buckets.args(keys_, pairs, count, offsets_, s.runs, s.buckets, s.shift, s.b_bits),
+                   (s.buckets + group - 1) / group, group);
 }
 
 }  // namespace clinch::detail
