@@ -28,7 +28,7 @@ bool BvhForest::divide(std::uint32_t n, const FilterInput& filters) {
     is_still_.resize(n);
     for (std::uint32_t i = 0; i < n; ++i) {
         const std::uint8_t now = motion[i] == Motion::Static || motion[i] == Motion::Sleeping ? 1 : 0;
-        changed |= now ^ is_still_[i];
+        changed |= now == is_still_[i] ? 0u : 1u;
         still += now;
         is_still_[i] = now;
     }
@@ -50,7 +50,8 @@ void BvhForest::take_bodies() {
     if (!movers_.empty()) moving_.hold(movers_);
 }
 
-// Whether a body that cannot move has another box than in the last call; with `fresh` there was none. Waits.
+// Whether a body that cannot move has another box than in the last call, which waits; with `fresh` there was none.
+// Keeps the boxes.
 bool BvhForest::still_boxes_changed(BoxInput& boxes, bool fresh) {
     if (!compare_kernel_) compare_kernel_ = device_.kernel("broad_phase/bvh", "bvh_compare");
     const DeviceInfo& info = device_.info();
@@ -69,16 +70,24 @@ bool BvhForest::still_boxes_changed(BoxInput& boxes, bool fresh) {
     return std::any_of(changed.begin(), changed.end(), [](std::uint32_t one) { return one != 0; });
 }
 
+void BvhForest::update_still(BoxInput& boxes, bool same_bodies) {
+    if (same_bodies && !still_boxes_changed(boxes, false)) {
+        kept_ = still_count_;
+        return;
+    }
+    if (!same_bodies) take_bodies();
+    still_.update(boxes);
+    // It is seldom sorted: that memory now serves to keep the boxes.
+    still_.release_sort_memory();
+    if (!same_bodies) still_boxes_changed(boxes, true);
+}
+
 void BvhForest::update(BoxInput& boxes, const FilterInput& filters) {
     const std::uint32_t n = boxes.count();
     const bool same_bodies = divide(n, filters);
     kept_ = 0;
     if (split_) {
-        if (!same_bodies) take_bodies();
-        if (still_boxes_changed(boxes, !same_bodies))
-            still_.update(boxes);
-        else
-            kept_ = still_count_;
+        update_still(boxes, same_bodies);
     } else {
         moving_.hold_all();
     }

@@ -46,6 +46,7 @@ private:
     bool divide(std::uint32_t n, const FilterInput& filters);
     void take_bodies();
     bool still_boxes_changed(BoxInput& boxes, bool fresh);
+    void update_still(BoxInput& boxes, bool same_bodies);
 
     Device& device_;
     const std::uint32_t fewest_;

@@ -65,12 +65,7 @@ unsigned axis_bits(const BoxStatistics& stats, const double* extent, double wide
 
 }  // namespace
 
-BvhTree::BvhTree(Device& device)
-    : device_(device),
-      width_(std::max(device.info().lanes, 8u)),
-      statistics_(device),
-      sort32_(device),
-      sort64_(device, RadixSort::Key::Bits64) {}
+BvhTree::BvhTree(Device& device) : device_(device), width_(std::max(device.info().lanes, 8u)), statistics_(device) {}
 
 // Work-items that share `nodes`: a few for each core, or enough to fill a GPU; and so many that no loop is too long
 // where loops end early.
@@ -166,7 +161,15 @@ void BvhTree::sort(BoxInput& boxes, const BoxStatistics& stats, bool finest) {
     device_.launch_items(
         kernels.keys.args(boxes.on(device_), boxes.first(), n, frame_, order_, listed_ ? 1u : 0u, keys_),
         n / device_.info().lanes + 1);
-    (wide_keys_ ? sort64_ : sort32_).sort(keys_, order_, n, bits, !listed_);
+    std::optional<RadixSort>& sorter = wide_keys_ ? sort64_ : sort32_;
+    if (!sorter) sorter.emplace(device_, wide_keys_ ? RadixSort::Key::Bits64 : RadixSort::Key::Bits32);
+    sorter->sort(keys_, order_, n, bits, !listed_);
+}
+
+void BvhTree::release_sort_memory() {
+    sort32_.reset();
+    sort64_.reset();
+    keys_ = Buffer();
 }
 
 // Whether so many blocks lie in a single cell that searching them, each against each if they are all in the same, would
