@@ -2,42 +2,42 @@
 // Every work-item owns one run of consecutive keys and counters of its own, so nothing is shared: no
 // atomics, no local memory, any work-group size.
 //
-//   radix_count    keys, n, per_run, runs, shift -> counts[digit * runs + run]
+//   radix_count    keys, n, per_run, runs, shift, digits -> counts[digit * runs + run]
 //   radix_scatter  keys, payload, offsets (the scan of counts) -> keys and payload in order of this digit
-// Defines: RADIX_BITS (8): bits of a digit; KEY (uint): type of a key, uint or ulong
+// Defines: RADIX_BITS (8): most bits of a digit, of which there are `digits`, a power of two; KEY (uint): type of a key, uint or ulong
 #ifndef RADIX_BITS
 #define RADIX_BITS 8
 #endif
 #ifndef KEY
 #define KEY uint
 #endif
-#define DIGITS (1u << RADIX_BITS)
+#define MAX_DIGITS (1u << RADIX_BITS)
 
-inline uint digit_of(KEY key, uint shift) { return (uint)(key >> shift) & (DIGITS - 1); }
+inline uint digit_of(KEY key, uint shift, uint digits) { return (uint)(key >> shift) & (digits - 1); }
 
 kernel void radix_count(global const KEY* restrict keys, uint n, uint per_run, uint runs, uint shift,
-                        global uint* restrict counts) {
+                        uint digits, global uint* restrict counts) {
     uint run = get_global_id(0);
     if (run >= runs) return;
-    uint mine[DIGITS];
-    for (uint d = 0; d < DIGITS; ++d) mine[d] = 0;
+    uint mine[MAX_DIGITS];
+    for (uint d = 0; d < digits; ++d) mine[d] = 0;
     uint first = min(n, run * per_run), end = min(n, first + per_run);
-    for (uint i = first; i < end; ++i) mine[digit_of(keys[i], shift)] += 1;
-    for (uint d = 0; d < DIGITS; ++d) counts[d * runs + run] = mine[d];
+    for (uint i = first; i < end; ++i) mine[digit_of(keys[i], shift, digits)] += 1;
+    for (uint d = 0; d < digits; ++d) counts[d * runs + run] = mine[d];
 }
 
 // With `number` not 0 the payload of the first pass is the position itself; `payload` is then not read.
 kernel void radix_scatter(global const KEY* restrict keys, global const uint* restrict payload, uint n, uint per_run, uint runs,
-                          uint shift, global const uint* restrict offsets, global KEY* restrict keys_out,
+                          uint shift, uint digits, global const uint* restrict offsets, global KEY* restrict keys_out,
                           global uint* restrict payload_out, uint number) {
     uint run = get_global_id(0);
     if (run >= runs) return;
-    uint next[DIGITS];
-    for (uint d = 0; d < DIGITS; ++d) next[d] = offsets[d * runs + run];
+    uint next[MAX_DIGITS];
+    for (uint d = 0; d < digits; ++d) next[d] = offsets[d * runs + run];
     uint first = min(n, run * per_run), end = min(n, first + per_run);
     for (uint i = first; i < end; ++i) {
         KEY key = keys[i];
-        uint to = next[digit_of(key, shift)]++;
+        uint to = next[digit_of(key, shift, digits)]++;
         keys_out[to] = key;
         payload_out[to] = number != 0 ? i : payload[i];
     }

@@ -17,7 +17,8 @@ public:
 
     /// Enqueues the sort of the first `n` keys by their lowest `bits` bits; higher ones must be 0. The payload moves
     /// along: what `payload` holds, or, with `number`, each key's place before the sort. Both buffers may be exchanged
-    /// for others at least as large. Cost: a pass of two reads and a write for every 8 bits.
+    /// for others at least as large. Cost: a pass of two reads and a write for every 8 bits (11 for 16,384 to
+    /// 524,288 keys, 4 on devices of one lane).
     void sort(Buffer& keys, Buffer& payload, std::uint32_t n, unsigned bits, bool number);
 
 private:
