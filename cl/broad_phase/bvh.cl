@@ -17,8 +17,8 @@
 // the other block's box.
 // The state of a traversal is one word of bits a level: the nodes of the current blocks still to visit.
 // A tree may hold some of the boxes only. Where many bodies cannot move, they have a tree of their own, which is kept
-// while their boxes stay as they are and which only the blocks of the other tree search: full traversal, as blocks of
-// two trees are never the same (static and dynamic trees: Bullet's btDbvtBroadphase).
+// while their boxes stay as they are and is searched against the tree of the others alone: full traversal, as blocks
+// of two trees are never the same (static and dynamic trees: Bullet's btDbvtBroadphase).
 //
 //   bvh_compare boxes of some bodies -> whether they are those of the last call, which are kept
 //   bvh_keys    boxes (rows) -> key: class of size, then place of the centre on the curve

@@ -12,7 +12,7 @@
 namespace clinch::detail {
 
 /// Bodies that cannot move (Motion::Static, Sleeping) get a tree of their own where they are many. That is kept from
-/// call to call while they are the same bodies with the same boxes, and only the other tree looks into it, so
+/// call to call while they are the same bodies with the same boxes, and is searched against the other tree alone, so
 /// that no two of them are ever tested against each other (static and dynamic trees: Bullet's btDbvtBroadphase).
 class BvhForest {
 public:
@@ -33,7 +33,7 @@ public:
     bool split() const noexcept { return split_; }
     /// The tree whose bodies are to be searched for one another: all, or those that can move. Null: there are none.
     const BvhTree* moving() const noexcept { return split_ && movers_.empty() ? nullptr : &moving_; }
-    /// The tree that the other one is to look into; null: there is none.
+    /// The tree of those that cannot move, to be searched against moving() alone; null: there is none.
     const BvhTree* still() const noexcept { return split_ ? &still_ : nullptr; }
     /// Bodies whose tree the last update took as it was.
     std::uint32_t kept() const noexcept { return kept_; }
