@@ -35,10 +35,20 @@ kernel void radix_scatter(global const KEY* restrict keys, global const uint* re
     uint next[MAX_DIGITS];
     for (uint d = 0; d < digits; ++d) next[d] = offsets[d * runs + run];
     uint first = min(n, run * per_run), end = min(n, first + per_run);
-    for (uint i = first; i < end; ++i) {
-        KEY key = keys[i];
-        uint to = next[digit_of(key, shift, digits)]++;
-        keys_out[to] = key;
-        payload_out[to] = number != 0 ? i : payload[i];
+    // Two loops, so that no compiler reads a payload that is not there.
+    if (number != 0) {
+        for (uint i = first; i < end; ++i) {
+            KEY key = keys[i];
+            uint to = next[digit_of(key, shift, digits)]++;
+            keys_out[to] = key;
+            payload_out[to] = i;
+        }
+    } else {
+        for (uint i = first; i < end; ++i) {
+            KEY key = keys[i];
+            uint to = next[digit_of(key, shift, digits)]++;
+            keys_out[to] = key;
+            payload_out[to] = payload[i];
+        }
     }
 }
