@@ -11,14 +11,15 @@
 #include <vector>
 
 #include "bench/broad_phase/plain_loop.hpp"
+#include "bench/guarded.hpp"
 #include "bench/scenes/boxes.hpp"
 #include "clinch/broad_phase.hpp"
-#include "clinch/error.hpp"
 #include "src/device/context_impl.hpp"
 
 namespace {
 
 using namespace clinch;
+using bench::add_guarded;
 
 void count(benchmark::State& state, std::uint64_t boxes, std::uint64_t pairs) {
     const double tests = 0.5 * static_cast<double>(boxes) * static_cast<double>(boxes - 1);
@@ -81,20 +82,6 @@ void thesis(benchmark::State& state, const std::string& kind, std::size_t n) {
     count(state, n, pairs);
 }
 
-template <class Body>
-void add(const std::string& name, const Body& body) {
-    benchmark::RegisterBenchmark(name.c_str(),
-                                 [body](benchmark::State& state) {
-                                     try {
-                                         body(state);
-                                     } catch (const Error& error) {
-                                         state.SkipWithError(error.what());
-                                     }
-                                 })
-        ->UseRealTime()
-        ->Unit(benchmark::kMillisecond);
-}
-
 // Takes seconds to minutes a call for 100,000 boxes of some kinds.
 bool slow(const std::string& algorithm) {
     return algorithm == "host-brute" || algorithm == "sweep3";
@@ -107,13 +94,13 @@ void add_all() {
             const std::string scene = std::string(kind.name) + "/" + std::to_string(n);
             for (const std::string& algorithm : broad_phase_names())
                 if (n <= 10000 || !slow(algorithm))
-                    add("broad/" + algorithm + "/" + scene,
-                        [=](benchmark::State& state) { broad(state, algorithm, kind.name, n); });
+                    add_guarded("broad/" + algorithm + "/" + scene,
+                                [=](benchmark::State& state) { broad(state, algorithm, kind.name, n); });
         }
     for (const std::size_t n : {1000u, 10000u}) {
         const std::string scene = "uniform/" + std::to_string(n);
-        add("yardstick/plain-loop/" + scene, [=](benchmark::State& state) { plain_loop(state, "uniform", n); });
-        add("baseline/thesis-brute/" + scene, [=](benchmark::State& state) { thesis(state, "uniform", n); });
+        add_guarded("yardstick/plain-loop/" + scene, [=](benchmark::State& state) { plain_loop(state, "uniform", n); });
+        add_guarded("baseline/thesis-brute/" + scene, [=](benchmark::State& state) { thesis(state, "uniform", n); });
     }
 }
 

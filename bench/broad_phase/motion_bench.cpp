@@ -9,33 +9,19 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "bench/guarded.hpp"
 #include "bench/scenes/boxes.hpp"
 #include "bench/scenes/motion.hpp"
 #include "clinch/broad_phase.hpp"
-#include "clinch/error.hpp"
 #include "clinch/pipeline.hpp"
 
 namespace {
 
 using namespace clinch;
-using Body = std::function<void(benchmark::State&)>;
-
-void add(const std::string& name, const Body& body) {
-    benchmark::RegisterBenchmark(name.c_str(),
-                                 [body](benchmark::State& state) {
-                                     try {
-                                         body(state);
-                                     } catch (const Error& error) {
-                                         state.SkipWithError(error.what());
-                                     }
-                                 })
-        ->UseRealTime()
-        ->Unit(benchmark::kMillisecond);
-}
+using bench::add_guarded;
 
 enum class Way { Full, Update, UpdateEvents };
 
@@ -95,7 +81,7 @@ enum class Sent { Movers, None, All };
 void pipeline_frames(benchmark::State& state, std::size_t n, Sent sent) {
     const std::vector<Aabb> boxes = scenes::make_boxes("density", n, 1);
     Scene scene;
-    clinch::Body body;
+    Body body;
     body.shape = scene.add_shape(Box{{0.5, 0.5, 0.5}});
     std::vector<double> positions;
     for (const Aabb& box : boxes) {
@@ -137,17 +123,18 @@ void pipeline_frames(benchmark::State& state, std::size_t n, Sent sent) {
 bool add_all() {
     for (const std::size_t n : {100000u, 1000000u}) {
         const std::string boxes = "/" + std::to_string(n);
-        add("motion/full" + boxes, [=](benchmark::State& s) { frames(s, n, 0.01, Way::Full, Order::Sorted); });
-        add("motion/update" + boxes, [=](benchmark::State& s) { frames(s, n, 0.01, Way::Update, Order::Sorted); });
-        add("motion/update-events" + boxes,
-            [=](benchmark::State& s) { frames(s, n, 0.01, Way::UpdateEvents, Order::Sorted); });
-        add("motion/none" + boxes, [=](benchmark::State& s) { none(s, n); });
-        add("motion/all" + boxes, [=](benchmark::State& s) { frames(s, n, 1.0, Way::Full, Order::Any); });
-        add("motion/step" + boxes, [=](benchmark::State& s) { pipeline_frames(s, n, Sent::Movers); });
-        add("motion/step-none" + boxes, [=](benchmark::State& s) { pipeline_frames(s, n, Sent::None); });
-        add("motion/step-full" + boxes, [=](benchmark::State& s) { pipeline_frames(s, n, Sent::All); });
+        add_guarded("motion/full" + boxes, [=](benchmark::State& s) { frames(s, n, 0.01, Way::Full, Order::Sorted); });
+        add_guarded("motion/update" + boxes,
+                    [=](benchmark::State& s) { frames(s, n, 0.01, Way::Update, Order::Sorted); });
+        add_guarded("motion/update-events" + boxes,
+                    [=](benchmark::State& s) { frames(s, n, 0.01, Way::UpdateEvents, Order::Sorted); });
+        add_guarded("motion/none" + boxes, [=](benchmark::State& s) { none(s, n); });
+        add_guarded("motion/all" + boxes, [=](benchmark::State& s) { frames(s, n, 1.0, Way::Full, Order::Any); });
+        add_guarded("motion/step" + boxes, [=](benchmark::State& s) { pipeline_frames(s, n, Sent::Movers); });
+        add_guarded("motion/step-none" + boxes, [=](benchmark::State& s) { pipeline_frames(s, n, Sent::None); });
+        add_guarded("motion/step-full" + boxes, [=](benchmark::State& s) { pipeline_frames(s, n, Sent::All); });
         for (const char* const how : {"list", "any", "count", "stream"})
-            add(std::string("output/") + how + boxes, [=](benchmark::State& s) { output(s, n, how); });
+            add_guarded(std::string("output/") + how + boxes, [=](benchmark::State& s) { output(s, n, how); });
     }
     return true;
 }

@@ -49,11 +49,7 @@ kernel void grid_gather(global const float* restrict boxes, ulong first, global 
 // One work-item 256 cells.
 kernel void grid_starts(global const uint* restrict keys, uint n, uint cells, global uint* restrict start) {
     uint c = get_global_id(0) * 256;
-    uint at = 0;
-    for (uint end = min(c + 256, cells + 3); c < end; ++c) {
-        at = first_at_least(keys, n, at, c);
-        start[c] = at;
-    }
+    first_of_each(keys, n, c, min(c + 256, cells + 3), start);
 }
 
 // LANES small boxes that are looked for at once, entry i and those after it.

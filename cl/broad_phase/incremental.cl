@@ -74,11 +74,7 @@ kernel void inc_split(global const uint* restrict pairs, uint count, global uint
 // One work-item 256 bodies.
 kernel void inc_first_rows(global const uint* restrict sorted, uint count, uint n, global uint* restrict first) {
     uint body = get_global_id(0) * 256;
-    uint at = 0;
-    for (uint end = min(body + 256, n + 1); body < end; ++body) {
-        at = first_at_least(sorted, count, at, body);
-        first[body] = at;
-    }
+    first_of_each(sorted, count, body, min(body + 256, n + 1), first);
 }
 
 // Touching boxes overlap. Kept and extra pairs are of bodies that have boxes.

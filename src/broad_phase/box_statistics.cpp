@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "src/device/quirks.hpp"
+
 namespace clinch::detail {
 namespace {
 
@@ -37,7 +39,9 @@ BoxStatistics StatisticsGatherer::gather(BoxInput& boxes) {
     if (!kernel_) kernel_ = device_.kernel("broad_phase/box_statistics", "box_statistics");
     const DeviceInfo& info = device_.info();
     const std::uint32_t n = boxes.count();
-    const std::uint32_t runs = std::clamp(n / 1024, 1u, info.compute_units * (info.lanes > 1 ? 4u : 16u));
+    const std::uint32_t least = n / (most_loop_iterations(info) / 8) + 1;  // no run may be longer than a loop
+    const std::uint32_t runs =
+        std::max(least, std::clamp(n / 1024, 1u, info.compute_units * (info.lanes > 1 ? 4u : 16u)));
     const std::uint32_t samples = sample_size(n) / runs + 1;
     const std::size_t words = record + std::size_t{3} * samples;
     device_.reserve(records_, runs * words * sizeof(float), "box statistics");

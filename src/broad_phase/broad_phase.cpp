@@ -49,7 +49,7 @@ void check_count(std::uint64_t count) {
 
 }  // namespace
 
-BroadPhase::Impl::Impl(Context& c, BroadPhaseOptions o) : context(c.impl()), options(std::move(o)) {
+void detail::check_options(const Context::Impl& context, const BroadPhaseOptions& options) {
     if (options.algorithm != "auto" && detail::algorithm_named(options.algorithm).needs_device && context.infos.empty())
         throw Error(ErrorCode::InvalidArgument,
                     "the algorithm '" + options.algorithm +
@@ -57,6 +57,10 @@ BroadPhase::Impl::Impl(Context& c, BroadPhaseOptions o) : context(c.impl()), opt
     if (options.events && options.order == Order::Any)
         throw Error(ErrorCode::InvalidArgument,
                     "events need sorted pairs (Order::Sorted), but any order (Order::Any) was asked for");
+}
+
+BroadPhase::Impl::Impl(Context& c, BroadPhaseOptions o) : context(c.impl()), options(std::move(o)) {
+    detail::check_options(context, options);
 }
 
 const detail::AlgorithmRow& BroadPhase::Impl::choose(std::uint64_t count) const {
@@ -138,8 +142,9 @@ void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& bo
 
 bool BroadPhase::Impl::steps_pay(const detail::AlgorithmRow& row, std::uint64_t count, std::uint64_t changed) const {
     constexpr std::uint64_t fewest_boxes = 10000, boxes_a_change = 8;
-    return count >= fewest_boxes && count != steps_refused && changed <= count / boxes_a_change && row.needs_device &&
-           (options.algorithm == "auto" || options.algorithm == "grid") &&
+    return count >= fewest_boxes && count != steps_refused &&
+           report.pairs <= detail::Incremental::most_pairs_a_body * count && changed <= count / boxes_a_change &&
+           row.needs_device && (options.algorithm == "auto" || options.algorithm == "grid") &&
            detail::runs_on(detail::algorithm_named("grid"), context.infos[context.primary()]);
 }
 
@@ -206,6 +211,7 @@ View<const Pair> BroadPhase::update(View<const Aabb> boxes, View<const std::uint
     if (impl_->listed_boxes != boxes.size() || boxes.empty()) return find(boxes, filters);
     if (changed.empty()) return impl_->same_again();
     if (!impl_->steps_pay(impl_->choose(boxes.size()), boxes.size(), changed.size())) {
+        impl_->pairs.clear();  // it may map memory of what ends here
         impl_->incremental.reset();
         return find(boxes, filters);
     }

@@ -11,6 +11,12 @@
 #include "src/device/context_impl.hpp"
 
 namespace clinch {
+namespace detail {
+
+/// What does not go together, or not with the context, is InvalidArgument.
+void check_options(const Context::Impl& context, const BroadPhaseOptions& options);
+
+}  // namespace detail
 
 struct BroadPhase::Impl {
     Context::Impl& context;

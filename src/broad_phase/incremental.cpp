@@ -17,8 +17,6 @@ constexpr float fat_share = 1.0f / 64, mover_share = 1.0f / 8;
 // Spare entries for bodies that have left, and how many may leave in one step: beyond, all is built anew.
 constexpr std::uint32_t bodies_a_spare = 32, bodies_a_leaver = 64;
 constexpr std::size_t least_extras = 1024;  // room for extra pairs from the start
-// More kept pairs a body than this: going through them costs as much as searching.
-constexpr std::uint64_t most_pairs_a_body = 32;
 
 unsigned bits_of(std::uint32_t value) {
     unsigned bits = 0;
@@ -89,7 +87,8 @@ bool Incremental::build(BoxInput& boxes, const FilterInput& filters, PairList& p
         PairList fat_pairs;
         FindCounts of_search;
         grid_.find(fat_boxes, {filters.columns, filter_version_}, fat_pairs, of_search);
-        if (!grid_.binned() || fat_pairs.size() > most_pairs_a_body * n) return false;
+        if (!grid_.binned() || fat_pairs.size() > most_pairs_a_body * n || fat_pairs.size() > most_pairs())
+            return false;
         keep_pairs(fat_pairs.view(), n);
         counts.box_tests += of_search.box_tests;
         counts.pairs_filtered += of_search.pairs_filtered;
@@ -116,6 +115,11 @@ bool Incremental::build(BoxInput& boxes, const FilterInput& filters, PairList& p
     put_out(pairs, counts);
     bodies_ = n;
     return true;
+}
+
+// Pairs that one buffer holds; they are numbered in 32 bits.
+std::uint64_t Incremental::most_pairs() const {
+    return std::min<std::uint64_t>(device_.info().max_allocation / sizeof(Pair), none);
 }
 
 // Pairs as two columns, and their numbers in the order of b.
@@ -162,6 +166,7 @@ bool Incremental::step(BoxInput& boxes, const Changes& changes, const FilterInpu
     if (!leavers.empty()) {
         move(boxes, leavers);
         query(leavers, filters, counts);
+        if (kept_ + extra_.size() > most_pairs()) return false;
         for (const Leaver& leaver : leavers) left_now_[leaver.body / 64] = 0;
     }
     retest(boxes, changes);

@@ -20,9 +20,12 @@ struct Changes {
 
 /// Keeps the pairs of fattened boxes from step to step. Results are those of a full search, in sorted order.
 /// Cost of a step: a few tests a changed body, a search of a few cells for each that has left its fattened box, and one
-/// pass over the pairs. Memory on the device: about 120 bytes a body and 30 a pair of fattened boxes.
+/// pass over the pairs. Memory on the device: up to about 200 bytes a body and 30 a pair of fattened boxes.
 class Incremental {
 public:
+    /// More pairs a body than this: going through them costs as much as searching.
+    static constexpr std::uint64_t most_pairs_a_body = 32;
+
     Incremental(Device& device, const BroadPhaseOptions& options);
 
     /// Whether update() may be called: build() succeeded and nothing was forgotten since.
@@ -32,8 +35,8 @@ public:
         return extra_.capacity() * sizeof(Pair) + filter_rows_.capacity() * sizeof(FilterRow) +
                spare_entry_.capacity() * sizeof(std::uint32_t) + left_now_.capacity() * sizeof(std::uint64_t);
     }
-    /// Begins with these boxes. False, with nothing found, when keeping pairs does not pay here: next to no boxes, or
-    /// very many pairs a body.
+    /// Begins with these boxes. False, with nothing found, when keeping pairs does not pay here: next to no boxes, very
+    /// many pairs a body, or more pairs than one buffer holds.
     bool build(BoxInput& boxes, const FilterInput& filters, PairList& pairs, FindCounts& counts);
     /// The same boxes after `changes`, in the same device memory. False, with nothing found, when so much has changed
     /// that it does not pay, and then it is no longer valid. Throws Error; then it is not valid either.
@@ -55,6 +58,7 @@ private:
         }
     };
     bool step(BoxInput& boxes, const Changes& changes, const FilterInput& filters, PairList& pairs, FindCounts& counts);
+    std::uint64_t most_pairs() const;
     void keep_pairs(View<const Pair> fat_pairs, std::uint32_t bodies);
     void compute_states(BoxInput& boxes);
     std::vector<Leaver> find_leavers(BoxInput& boxes, const Changes& changes, const FilterInput& filters);

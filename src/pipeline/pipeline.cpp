@@ -19,7 +19,7 @@ struct StepResult::Impl {
           measure(options.broad_phase.measure_stages),
           tell_events(options.broad_phase.events),
           result(*this) {
-        if (tell_events) BroadPhase checks_options(context, options.broad_phase);
+        detail::check_options(context.impl(), options.broad_phase);
     }
     // Events are those of the pairs with planes, told here.
     static BroadPhaseOptions without_events(BroadPhaseOptions options) {

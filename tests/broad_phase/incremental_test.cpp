@@ -167,3 +167,21 @@ TEST_CASE("updates need no device", "[host]") {
         CHECK(same(broad_phase.update(world.boxes, changed), test::pairs_by_hand(world.boxes)));
     }
 }
+
+TEST_CASE("updates with more pairs than one buffer holds are searches", "[device]") {
+    World world("grid-touch", 12000);  // 13 pairs a box, and no more in fattened boxes
+    for (std::uint32_t i = 0; i < list_devices().size(); ++i) {
+        Context context = test::with_lanes(i, list_devices()[i].lanes);
+        context.impl().infos[0].max_allocation = std::size_t{1} << 20;
+        BroadPhase broad_phase(context);
+        broad_phase.find(world.boxes);
+        for (int frame = 0; frame < 3; ++frame) {
+            INFO("device " << i << " frame " << frame);
+            const std::vector<std::uint32_t> changed = world.move(50);
+            const View<const Pair> found = broad_phase.update(world.boxes, changed);
+            CHECK(found.size() * sizeof(Pair) > std::size_t{1} << 20);
+            CHECK(same(found, test::pairs_by_sweep(world.boxes)));
+            CHECK(broad_phase.report().algorithm != "incremental");
+        }
+    }
+}

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <vector>
 
+#include "clinch/error.hpp"
 #include "clinch/pipeline.hpp"
 #include "tests/device/devices.hpp"
 #include "tests/pair_lists.hpp"
@@ -73,5 +74,8 @@ TEST_CASE("steps with few changes are those of a fresh search, with events", "[d
         if (frame == 8) scene.add_body(scene.body({41}));
         change(scene, frame == 9 ? 6000 : 60, frame % 3 == 1, random);
     }
+    PipelineOptions any_order = options;
+    any_order.broad_phase.order = Order::Any;
+    CHECK_THROWS_AS(Pipeline(context, any_order), Error);
     CHECK((kept >= 6 || !list_devices()[0].quirks.empty()));
 }
