@@ -35,6 +35,7 @@
 #define SINK_IDS private
 #endif
 #include "broad_phase/pair_sink.clh"
+#include "common/hilbert.clh"
 
 #ifndef WIDTH
 #if LANES < 8
@@ -106,51 +107,10 @@ inline void put_row(float* columns, uint width, uint l, global const float* box)
     columns[5 * width + l] = box[5];
 }
 
-// The ten lowest bits, two places apart.
-inline uintN spread(uintN x) {
-    x &= 0x3ffu;
-    x = (x | x << 16) & 0x030000ffu;
-    x = (x | x << 8) & 0x0300f00fu;
-    x = (x | x << 4) & 0x030c30c3u;
-    return (x | x << 2) & 0x09249249u;
-}
-
 // Cells of centres on axis d.
 inline uintN cells_of(const float* columns, uint d, constant BvhFrame* f) {
     floatN centre = 0.5f * load_lanes(d, columns) + 0.5f * load_lanes(d + 3, columns);
     return truncate_lanes(fmin(fmax((centre - f->origin[d]) * f->scale, (floatN)(0.0f)), (floatN)(f->most_cells)));
-}
-
-// Cells become places on the Hilbert curve of 2^(3 bits) cells, whose bits are those of *x, *y, *z in turn from the
-// highest on [Skilling 2004, AxestoTranspose], without branches.
-inline void along_hilbert(uint bits, uintN* px, uintN* py, uintN* pz) {
-    uintN x = *px, y = *py, z = *pz;
-    for (uint k = bits - 1; k > 0; --k) {
-        uint below = (1u << k) - 1;
-        x ^= below & (0u - (x >> k & 1u));
-        uintN set = 0u - (y >> k & 1u), swap = (x ^ y) & below & ~set;
-        x ^= swap ^ (below & set);
-        y ^= swap;
-        set = 0u - (z >> k & 1u);
-        swap = (x ^ z) & below & ~set;
-        x ^= swap ^ (below & set);
-        z ^= swap;
-    }
-    y ^= x;
-    z ^= y;
-    uintN t = z ^ z >> 1;  // bit j: whether an odd number of bits from j on are set
-    t ^= t >> 2;
-    t ^= t >> 4;
-    t ^= t >> 8;
-    t = (t ^ t >> 16) >> 1;
-    *px = x ^ t;
-    *py = y ^ t;
-    *pz = z ^ t;
-}
-
-// Ten bits of each of x, y, z in turn, from bit `from` on.
-inline uintN interleave(uintN x, uintN y, uintN z, uint from) {
-    return spread(x >> from) << 2 | spread(y >> from) << 1 | spread(z >> from);
 }
 
 // 0, 1, 2 or 3: the class of a box's width, its longest side.
