@@ -30,6 +30,7 @@ struct DeviceInfo {
     std::uint64_t max_allocation = 0;
     std::uint64_t local_memory = 0;
     bool fp64 = false;                ///< computes in float64
+    bool exact_division = false;      ///< rounds float32 division and square root correctly when asked to
     bool unified_memory = false;      ///< shares the host's memory: results are mapped, not copied
     std::uint32_t sub_device = 0;     ///< which part of the device this is; 0 if `sub_devices` is 1
     std::uint32_t sub_devices = 1;    ///< how many equal parts the device was divided into

@@ -154,6 +154,8 @@ DeviceInfo describe(cl_device_id id) {
     info.max_allocation = device.max_memory_alloc_size();
     info.local_memory = device.local_memory_size();
     info.fp64 = device.supports_extension("cl_khr_fp64");
+    info.exact_division =
+        (device.get_info<cl_device_fp_config>(CL_DEVICE_SINGLE_FP_CONFIG) & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     info.unified_memory = device.get_info<cl_bool>(CL_DEVICE_HOST_UNIFIED_MEMORY) != CL_FALSE;
     info.quirks = quirks_of(info);
     info.use = use_of(info);

@@ -1,0 +1,80 @@
+// Narrow phase: which of the candidate pairs touch, where and how deeply.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "clinch/aabb.hpp"
+#include "clinch/contact.hpp"
+#include "clinch/context.hpp"
+#include "clinch/scene.hpp"
+#include "clinch/view.hpp"
+
+namespace clinch {
+
+struct NarrowPhaseOptions {
+    /// Speed against precision, 0 (fastest) to 1 (most exact). Below 0.25: float32 alone; an answer whose `error` reaches
+    /// across 0 is one the shapes may or may not touch by. From 0.25 on: float32, and float64 for every pair of which float32
+    /// cannot tell whether it touches. From 0.75 on: float64 for all.
+    double precision = 0.5;
+    /// Instead of `precision`: the error that answers may have, in the scene's unit of length. Pairs of which float32
+    /// cannot promise it are done in float64; those that still miss it are counted in NarrowReport::tolerance_missed.
+    std::optional<double> tolerance;
+    /// Wait for the device after each stage, so that NarrowTimes are those of the stages.
+    bool measure_stages = false;
+};
+
+/// Milliseconds of wall time a stage took.
+struct NarrowTimes {
+    double total = 0.0;
+    double upload = 0.0;    ///< changed bodies and shapes, and the pairs
+    double buckets = 0.0;   ///< grouping pairs by the classes of their shapes
+    double routines = 0.0;  ///< computing the answers
+    double gather = 0.0;    ///< contacts into one list, on the host
+};
+
+/// One cell of the algorithm matrix that had work.
+struct BucketReport {
+    std::string classes;      ///< as "sphere-box"
+    std::string routine;      ///< name of the routine that ran
+    std::uint64_t pairs = 0;  ///< candidates
+    std::uint64_t again = 0;  ///< of those, done in float64 after float32 could not decide
+};
+
+/// Counts and times of the last call.
+struct NarrowReport {
+    std::uint64_t pairs = 0;     ///< candidates looked at
+    std::uint64_t contacts = 0;  ///< rows of the result
+    std::uint64_t tolerance_missed = 0;
+    std::uint64_t cells_skipped = 0;  ///< cells of the matrix without a pair: nothing built, allocated or launched
+    std::vector<BucketReport> buckets;
+    NarrowTimes ms;
+    std::uint64_t peak_device_bytes = 0;
+};
+
+/// Finds the contacts of candidate pairs. Keeps what it sent and its buffers between calls.
+class NarrowPhase {
+public:
+    /// Options out of their range are InvalidArgument. `context` must outlive this object. Builds nothing yet.
+    explicit NarrowPhase(Context& context, const NarrowPhaseOptions& options = {});
+    ~NarrowPhase();
+    NarrowPhase(NarrowPhase&& other) noexcept;
+    NarrowPhase& operator=(NarrowPhase&& other) noexcept;
+
+    /// The contacts of those of `pairs` whose distance is at most the margins of the two bodies together, in the order
+    /// of `pairs`: ascending if those are. A pair of a body that is not there or rejected, of two planes, or with a mesh,
+    /// is InvalidArgument. Valid until the next call or the end of this object. Throws Error; then there is no result.
+    View<const Contact> find(const Scene& scene, View<const Pair> pairs);
+
+    const NarrowReport& report() const noexcept;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace clinch

@@ -1,0 +1,21 @@
+// The narrow phase on the host, in float64.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "clinch/aabb.hpp"
+#include "clinch/scene.hpp"
+#include "src/narrow_phase/contact_list.hpp"
+#include "src/narrow_phase/matrix.hpp"
+#include "src/narrow_phase/narrow_scene.hpp"
+
+namespace clinch::detail {
+
+/// Row of the matrix for a pair; null where there is none: see Slots::group.
+const MatrixRow* row_of(const Scene& scene, const NarrowShapes& shapes, const Pair& pair);
+
+/// Answers for pairs that all have a row, in their order. Several threads above a few hundred pairs.
+std::vector<HostAnswer> touch_on_host(const Scene& scene, const NarrowShapes& shapes, View<const Pair> pairs);
+
+}  // namespace clinch::detail

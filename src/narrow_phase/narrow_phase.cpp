@@ -1,0 +1,255 @@
+#include "clinch/narrow_phase.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "clinch/error.hpp"
+#include "src/device/context_impl.hpp"
+#include "src/device/quirks.hpp"
+#include "src/device/stopwatch.hpp"
+#include "src/narrow_phase/contact_list.hpp"
+#include "src/narrow_phase/host_narrow.hpp"
+#include "src/narrow_phase/matrix.hpp"
+#include "src/narrow_phase/narrow_scene.hpp"
+#include "src/narrow_phase/slots.hpp"
+
+namespace clinch {
+namespace {
+
+using namespace detail;
+
+// What float32 answers are good for: see NarrowPhaseOptions::precision.
+enum class Level { Fast, Certain, Exact };
+
+Level level_of(const NarrowPhaseOptions& options) {
+    if (options.tolerance) return Level::Certain;
+    return options.precision < 0.25 ? Level::Fast : options.precision < 0.75 ? Level::Certain : Level::Exact;
+}
+
+void check_options(const NarrowPhaseOptions& options) {
+    if (!(options.precision >= 0.0 && options.precision <= 1.0))
+        throw Error(ErrorCode::InvalidArgument,
+                    "precision is " + std::to_string(options.precision) + " and must be from 0 to 1");
+    if (options.tolerance && !(*options.tolerance > 0.0 && std::isfinite(*options.tolerance)))
+        throw Error(ErrorCode::InvalidArgument,
+                    "tolerance is " + std::to_string(*options.tolerance) + " and must be a positive length");
+}
+
+}  // namespace
+
+struct NarrowPhase::Impl {
+    Impl(Context& c, const NarrowPhaseOptions& o) : context(c.impl()), options(o), level(level_of(o)) {
+        check_options(o);
+    }
+
+    Context::Impl& context;
+    NarrowPhaseOptions options;
+    Level level;
+    NarrowShapes shapes;
+    std::unique_ptr<NarrowScene> on_device;
+    std::unique_ptr<Slots> slots;
+    std::array<std::array<Kernel, 4>, 32> kernels;  // of a bucket: 32 and 64 bits, without and with margins
+    ContactList contacts;
+    NarrowReport report;
+
+    void find(const Scene& scene, View<const Pair> pairs);
+    bool worth_a_device(std::size_t pairs) const;
+    void find_on_host(const Scene& scene, View<const Pair> pairs);
+    void find_on_device(const Scene& scene, View<const Pair> pairs, bool shapes_changed);
+    void do_chunk(const Scene& scene, View<const Pair> pairs);
+    void do_bucket(const Scene& scene, View<const Pair> pairs, std::size_t k);
+    void run(std::size_t k, const BucketSlice& slice, unsigned bits);
+    void run_float64(const Scene& scene, std::size_t k, const BucketSlice& slice) {
+        on_device->update(scene, shapes, 64);
+        run(k, slice, 64);
+    }
+    void run_on_host(const Scene& scene, View<const Pair> pairs, const BucketSlice& slice);
+    Kernel& kernel(std::size_t k, unsigned bits);
+    bool in_float32(const MatrixRow& row) const;
+    Device& device() const { return context.open(context.primary()); }
+    void stage_done() const {
+        if (options.measure_stages) device().finish();
+    }
+};
+
+// Few pairs are done on the host before a device has been told of them.
+bool NarrowPhase::Impl::worth_a_device(std::size_t pairs) const {
+    constexpr std::size_t few_pairs = 128;
+    if (context.infos.empty() || pairs < few_pairs) return false;
+    return context.infos[context.primary()].fp64 || level != Level::Exact;
+}
+
+void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs) {
+    const Stopwatch total;
+    contacts.clear();
+    report = NarrowReport{};
+    report.pairs = pairs.size();
+    for (const MatrixRow& row : matrix()) report.buckets.push_back({classes_text(row), row.module, 0, 0});
+    const Stopwatch upload;
+    const bool shapes_changed = shapes.update(scene);
+    report.ms.upload = upload.ms();
+    try {
+        if (worth_a_device(pairs.size()))
+            find_on_device(scene, pairs, shapes_changed);
+        else
+            find_on_host(scene, pairs);
+    } catch (...) {
+        contacts.clear();
+        if (on_device) on_device->forget();
+        throw;
+    }
+    const Stopwatch finish;
+    contacts.finish(scene, on_device && on_device->has_margins());
+    report.ms.gather += finish.ms();
+    report.contacts = contacts.size();
+    if (options.tolerance) report.tolerance_missed = contacts.count_above(*options.tolerance);
+    report.cells_skipped = static_cast<std::uint64_t>(std::count_if(
+        report.buckets.begin(), report.buckets.end(), [](const BucketReport& bucket) { return bucket.pairs == 0; }));
+    report.buckets.erase(std::remove_if(report.buckets.begin(), report.buckets.end(),
+                                        [](const BucketReport& bucket) { return bucket.pairs == 0; }),
+                         report.buckets.end());
+    for (const auto& opened : context.devices)
+        if (opened != nullptr) report.peak_device_bytes += opened->report().peak_bytes;
+    report.ms.total = total.ms();
+}
+
+void NarrowPhase::Impl::find_on_host(const Scene& scene, View<const Pair> pairs) {
+    const Stopwatch watch;
+    for (const Pair& pair : pairs) {
+        const MatrixRow* const row = row_of(scene, shapes, pair);
+        if (row == nullptr) throw_no_routine(pair);
+        ++report.buckets[static_cast<std::size_t>(row - matrix().data())].pairs;
+    }
+    for (std::size_t first = 0; first < pairs.size(); first += Slots::chunk_pairs)
+        contacts.append(touch_on_host(
+            scene, shapes, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)}));
+    report.ms.routines = watch.ms();
+}
+
+void NarrowPhase::Impl::find_on_device(const Scene& scene, View<const Pair> pairs, bool shapes_changed) {
+    if (!on_device) {
+        on_device = std::make_unique<NarrowScene>(device());
+        slots = std::make_unique<Slots>(device());
+    }
+    const Stopwatch upload;
+    on_device->update_classes(scene, shapes);
+    if (shapes_changed) on_device->shapes_changed();
+    on_device->update(scene, shapes, level == Level::Exact ? 64 : 32);
+    stage_done();
+    report.ms.upload += upload.ms();
+    for (std::size_t first = 0; first < pairs.size(); first += Slots::chunk_pairs)
+        do_chunk(scene, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)});
+}
+
+void NarrowPhase::Impl::do_chunk(const Scene& scene, View<const Pair> pairs) {
+    const Stopwatch group;
+    slots->group(pairs, *on_device, static_cast<std::uint32_t>(scene.row_count()), level != Level::Fast);
+    stage_done();
+    report.ms.buckets += group.ms();
+    const Stopwatch routines;
+    for (std::size_t k = 0; k < slots->bucket_count(); ++k)
+        if (slots->bucket(k).count > 0) do_bucket(scene, pairs, k);
+    stage_done();
+    report.ms.routines += routines.ms();
+    const Stopwatch gather;
+    const bool rests = level != Level::Fast;
+    const std::uint32_t count = slots->gather();
+    if (count > 0) {
+        const std::size_t columns = 2 + answer_columns + (rests ? rest_columns : 0);
+        const Mapping mapping =
+            device().map(slots->contacts(), columns * slots->contact_stride() * sizeof(std::uint32_t));
+        contacts.append(mapping.as<std::uint32_t>(), slots->contact_stride(), count, rests);
+    }
+    report.ms.gather += gather.ms();
+}
+
+// Whether the device is asked in float32 first.
+bool NarrowPhase::Impl::in_float32(const MatrixRow& row) const {
+    const DeviceInfo& info = context.infos[context.primary()];
+    const bool any_loops = most_loop_iterations(info) == std::numeric_limits<std::uint32_t>::max();
+    return level != Level::Exact && (row.lanes || any_loops);
+}
+
+void NarrowPhase::Impl::do_bucket(const Scene& scene, View<const Pair> pairs, std::size_t k) {
+    const BucketSlice bucket = slots->bucket(k);
+    const MatrixRow& row = matrix()[k];
+    const bool fp64 = context.infos[context.primary()].fp64;
+    report.buckets[k].pairs += bucket.count;
+    if (!in_float32(row)) {
+        if (fp64)
+            run_float64(scene, k, bucket);
+        else
+            run_on_host(scene, pairs, bucket);
+        return;
+    }
+    run(k, bucket, 32);
+    if (level == Level::Fast) return;
+    const BucketSlice open = slots->undecided(bucket);
+    if (open.count == 0) return;
+    report.buckets[k].again += open.count;
+    if (fp64)
+        run_float64(scene, k, open);
+    else
+        run_on_host(scene, pairs, open);
+}
+
+Kernel& NarrowPhase::Impl::kernel(std::size_t k, unsigned bits) {
+    const bool margins = on_device->has_margins();
+    Kernel& kernel = kernels[k][(bits == 64 ? 1U : 0U) + (margins ? 2U : 0U)];
+    if (kernel) return kernel;
+    const MatrixRow& row = matrix()[k];
+    std::string defines = std::string(row.defines) + " -DREAL_BITS=" + std::to_string(bits);
+    if (!row.lanes) defines += " -DPAIR_LANES=1";
+    if (margins) defines += " -DMARGINS=1";
+    if (context.infos[context.primary()].exact_division)
+        defines += " -DEXACT_FP32=1 -cl-fp32-correctly-rounded-divide-sqrt";
+    kernel = device().kernel(row.module, "touch_pairs", defines);
+    return kernel;
+}
+
+void NarrowPhase::Impl::run(std::size_t k, const BucketSlice& slice, unsigned bits) {
+    constexpr std::uint32_t slot_block = 16;
+    const DeviceInfo& info = device().info();
+    const std::uint32_t most_items = info.compute_units * (info.lanes > 1 ? 16u : 65536u);
+    const std::uint32_t per_item = info.lanes > 1 ? ((slice.count - 1) / most_items / slot_block + 1) * slot_block
+                                                  : (slice.count - 1) / most_items + 1;
+    const std::uint32_t items = (slice.count - 1) / per_item + 1;
+    // What nobody reads may be any buffer.
+    const Buffer& margins = on_device->has_margins() ? on_device->margins() : on_device->classes();
+    const float tolerance =
+        options.tolerance ? static_cast<float>(*options.tolerance) : std::numeric_limits<float>::infinity();
+    Kernel& touch = kernel(k, bits);
+    touch.args(slots->pairs(), *slice.numbers, slice.listed ? 1u : 0u, slice.first, slice.count, per_item,
+               on_device->bodies(bits), on_device->shapes(bits), on_device->vertices(bits), margins, slots->answers(),
+               slots->stride(), slice.first_slot, tolerance, slots->hits());
+    const std::size_t group = device().group_size();
+    device().launch(touch, (items + group - 1) / group, group);
+}
+
+void NarrowPhase::Impl::run_on_host(const Scene& scene, View<const Pair> pairs, const BucketSlice& slice) {
+    std::vector<Pair> again;
+    again.reserve(slice.count);
+    for (const std::uint32_t number : slots->numbers(slice)) again.push_back(pairs[number]);
+    slots->put(slice, touch_on_host(scene, shapes, again));
+}
+
+NarrowPhase::NarrowPhase(Context& context, const NarrowPhaseOptions& options)
+    : impl_(std::make_unique<Impl>(context, options)) {}
+NarrowPhase::~NarrowPhase() = default;
+NarrowPhase::NarrowPhase(NarrowPhase&& other) noexcept = default;
+NarrowPhase& NarrowPhase::operator=(NarrowPhase&& other) noexcept = default;
+
+View<const Contact> NarrowPhase::find(const Scene& scene, View<const Pair> pairs) {
+    impl_->find(scene, pairs);
+    return impl_->contacts.view();
+}
+
+const NarrowReport& NarrowPhase::report() const noexcept {
+    return impl_->report;
+}
+
+}  // namespace clinch

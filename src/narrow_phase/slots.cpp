@@ -1,0 +1,178 @@
+#include "src/narrow_phase/slots.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "clinch/error.hpp"
+#include "src/device/quirks.hpp"
+#include "src/narrow_phase/matrix.hpp"
+
+namespace clinch::detail {
+namespace {
+
+constexpr const char* module = "narrow_phase/buckets";
+constexpr std::uint32_t most_buckets = 32;
+constexpr std::uint32_t slot_block = 16;  // buckets begin at a multiple: vectors of answers end in the bucket's own slots
+constexpr unsigned key_bits = 5;
+
+std::uint32_t in_blocks(std::uint32_t count) {
+    return (count + slot_block - 1) / slot_block * slot_block;
+}
+
+}  // namespace
+
+// Work-items that share `count` pairs: enough to keep all cores busy, and no loop too long.
+std::uint32_t Slots::runs_for(std::uint32_t count) const {
+    const DeviceInfo& info = device_.info();
+    const std::uint32_t least = count / (most_loop_iterations(info) / 40) + 1;
+    return std::max(least, std::clamp(count / 1024, 1u, info.compute_units * (info.lanes > 1 ? 8u : 64u)));
+}
+
+void Slots::group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_t bodies, bool with_rests) {
+    n_ = static_cast<std::uint32_t>(pairs.size());
+    with_rests_ = with_rests;
+    if (!keys_kernel_) {
+        keys_kernel_ = device_.kernel(module, "bucket_keys");
+        slots_kernel_ = device_.kernel(module, "bucket_slots");
+        table_ = device_.allocate(bucket_table().size(), "the table of buckets");
+        device_.write(table_, bucket_table().data(), bucket_table().size());
+    }
+    const std::uint32_t items = runs_for(n_), per_item = (n_ - 1) / items + 1;
+    device_.reserve(pairs_, n_ * sizeof(Pair), "the pairs of a chunk");
+    device_.reserve(keys_, n_ * sizeof(std::uint32_t), "the buckets of pairs");
+    device_.reserve(counts_, std::size_t{items} * most_buckets * sizeof(std::uint32_t), "the counts of buckets");
+    device_.write(pairs_, pairs.data(), n_ * sizeof(Pair));
+    const std::size_t group = device_.group_size();
+    device_.launch(keys_kernel_.args(pairs_, n_, scene.classes(), bodies, table_, per_item, items, keys_, counts_),
+                   (items + group - 1) / group, group);
+    std::vector<std::uint32_t> by_item(std::size_t{items} * most_buckets);
+    device_.read(counts_, by_item.data(), by_item.size() * sizeof by_item[0]);
+    std::vector<std::uint64_t> counts(most_buckets, 0);
+    for (std::size_t i = 0; i < by_item.size(); ++i) counts[i % most_buckets] += by_item[i];
+    if (counts[no_bucket] > 0) throw_no_bucket(pairs);
+    number_slots(counts);
+}
+
+// Says which pair it is that no bucket takes.
+void Slots::throw_no_bucket(View<const Pair> pairs) {
+    std::vector<std::uint32_t> keys(n_);
+    device_.read(keys_, keys.data(), keys.size() * sizeof keys[0]);
+    const auto i = static_cast<std::size_t>(std::find(keys.begin(), keys.end(), no_bucket) - keys.begin());
+    throw_no_routine(pairs[i]);
+}
+
+void Slots::number_slots(const std::vector<std::uint64_t>& counts) {
+    std::vector<std::uint32_t> first_pair, first_slot;
+    slices_.assign(matrix().size(), {});
+    const bool listed = std::count_if(counts.begin(), counts.end(), [](std::uint64_t c) { return c > 0; }) > 1;
+    std::uint32_t pairs_before = 0;
+    slots_used_ = 0;
+    for (std::size_t k = 0; k < slices_.size(); ++k) {
+        const auto count = static_cast<std::uint32_t>(counts[k]);
+        if (count == 0) continue;
+        slices_[k] = {pairs_before, count, slots_used_, listed, &numbers_};
+        first_pair.push_back(pairs_before);
+        first_slot.push_back(slots_used_);
+        pairs_before += count;
+        slots_used_ += in_blocks(count);
+    }
+    // Room for every pair a second time: it may be undecided.
+    const std::size_t slots = with_rests_ ? std::size_t{2} * slots_used_ + matrix().size() * slot_block : slots_used_;
+    stride_ = std::max<std::uint64_t>(stride_, slots);
+    device_.reserve(answers_, stride_ * (answer_columns + (with_rests_ ? rest_columns : 0)) * sizeof(float), "answers");
+    device_.reserve(hits_, stride_ * sizeof(std::uint32_t), "the hits among pairs");
+    device_.reserve(slot_of_, n_ * sizeof(std::uint32_t), "the slots of pairs");
+    device_.reserve(numbers_, n_ * sizeof(std::uint32_t), "the numbers of pairs");
+    device_.reserve(firsts_, most_buckets * sizeof(std::uint32_t), "the places of buckets");
+    device_.reserve(first_slots_, most_buckets * sizeof(std::uint32_t), "the slots of buckets");
+    device_.write(firsts_, first_pair.data(), first_pair.size() * sizeof(std::uint32_t));
+    device_.write(first_slots_, first_slot.data(), first_slot.size() * sizeof(std::uint32_t));
+    if (listed) sort_.sort(keys_, numbers_, n_, key_bits, true);
+    device_.launch_items(slots_kernel_.args(numbers_, listed ? 1u : 0u, n_, firsts_, first_slots_,
+                                            static_cast<std::uint32_t>(first_pair.size()), slot_of_),
+                         n_);
+}
+
+BucketSlice Slots::undecided(const BucketSlice& bucket) {
+    if (!open_count_) {
+        open_count_ = device_.kernel(module, "open_count");
+        open_fill_ = device_.kernel(module, "open_fill");
+        open_slots_ = device_.kernel(module, "open_slots");
+    }
+    const std::uint32_t runs = runs_for(bucket.count), per_run = (bucket.count - 1) / runs + 1;
+    device_.reserve(run_counts_, runs * sizeof(std::uint32_t), "the counts of runs");
+    device_.reserve(run_offsets_, runs * sizeof(std::uint32_t), "the offsets of runs");
+    const std::size_t group = device_.group_size(), groups = (runs + group - 1) / group;
+    device_.launch(open_count_.args(hits_, bucket.first_slot, bucket.count, per_run, runs, run_counts_), groups, group);
+    scan_.exclusive(run_counts_, runs, run_offsets_);
+    const std::uint32_t count = scan_.total();
+    if (count == 0) return {};
+    // The queue is in order: the next bucket's list is written when this one's has been worked through.
+    device_.reserve(open_, n_ * sizeof(std::uint32_t), "the undecided pairs");
+    device_.launch(open_fill_.args(hits_, bucket.first_slot, bucket.count, per_run, runs, run_offsets_, numbers_,
+                                   bucket.listed ? 1u : 0u, bucket.first, open_),
+                   groups, group);
+    device_.launch_items(open_slots_.args(open_, count, slots_used_, slot_of_), count);
+    const BucketSlice slice{0, count, slots_used_, true, &open_};
+    slots_used_ += in_blocks(count);
+    return slice;
+}
+
+void Slots::put(const BucketSlice& slice, const std::vector<HostAnswer>& answers) {
+    std::vector<std::uint32_t> hits(slice.count);
+    for (std::size_t i = 0; i < hits.size(); ++i) hits[i] = answers[i].hit ? 5 : 4;  // HIT and FLOAT64 of driver.clh
+    device_.write(hits_, hits.data(), hits.size() * sizeof hits[0], slice.first_slot * sizeof hits[0]);
+    std::vector<float> column(slice.count), rest(slice.count);
+    const auto put = [&](std::size_t c, std::size_t r, auto value) {
+        for (std::size_t i = 0; i < column.size(); ++i) {
+            const double x = value(answers[i]);
+            column[i] = static_cast<float>(x);
+            rest[i] = static_cast<float>(x - static_cast<double>(column[i]));
+        }
+        const std::size_t bytes = column.size() * sizeof(float);
+        device_.write(answers_, column.data(), bytes, (c * stride_ + slice.first_slot) * sizeof(float));
+        if (r > 0) device_.write(answers_, rest.data(), bytes, (r * stride_ + slice.first_slot) * sizeof(float));
+    };
+    put(0, 8, [](const HostAnswer& a) { return a.distance; });
+    put(1, 0, [](const HostAnswer& a) {  // as the driver widens it
+        return (a.error + 0x1p-46 * std::fabs(a.distance)) * 1.0000002 + 1e-37;
+    });
+    for (std::size_t d = 0; d < 3; ++d) {
+        put(2 + d, 9 + d, [d](const HostAnswer& a) { return a.normal[d]; });
+        put(5 + d, 12 + d, [d](const HostAnswer& a) { return a.point[d]; });
+    }
+}
+
+std::vector<std::uint32_t> Slots::numbers(const BucketSlice& slice) {
+    std::vector<std::uint32_t> out(slice.count);
+    if (slice.listed)
+        device_.read(*slice.numbers, out.data(), out.size() * sizeof out[0], slice.first * sizeof out[0]);
+    else
+        for (std::uint32_t i = 0; i < slice.count; ++i) out[i] = slice.first + i;
+    return out;
+}
+
+std::uint32_t Slots::gather() {
+    if (!count_kernel_) {
+        count_kernel_ = device_.kernel(module, "contact_count");
+        gather_kernel_ = device_.kernel(module, "contact_gather");
+    }
+    const std::uint32_t runs = runs_for(n_), per_run = (n_ - 1) / runs + 1;
+    device_.reserve(run_counts_, runs * sizeof(std::uint32_t), "the counts of runs");
+    device_.reserve(run_offsets_, runs * sizeof(std::uint32_t), "the offsets of runs");
+    const std::size_t group = device_.group_size(), groups = (runs + group - 1) / group;
+    device_.launch(count_kernel_.args(hits_, slot_of_, n_, per_run, runs, run_counts_), groups, group);
+    scan_.exclusive(run_counts_, runs, run_offsets_);
+    const std::uint32_t count = scan_.total();
+    if (count == 0) return 0;
+    contact_stride_ = std::max<std::uint64_t>(contact_stride_, count);
+    device_.reserve(contacts_,
+                    contact_stride_ * (2 + answer_columns + (with_rests_ ? rest_columns : 0)) * sizeof(std::uint32_t),
+                    "contacts");
+    device_.launch(gather_kernel_.args(pairs_, hits_, slot_of_, n_, per_run, runs, run_offsets_, answers_, stride_,
+                                       with_rests_ ? 1u : 0u, contacts_, contact_stride_),
+                   groups, group);
+    return count;
+}
+
+}  // namespace clinch::detail

@@ -1,0 +1,90 @@
+// The pairs of one call in buckets on a device, and the slots where their answers lie.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "clinch/aabb.hpp"
+#include "clinch/view.hpp"
+#include "src/device/device.hpp"
+#include "src/narrow_phase/narrow_scene.hpp"
+#include "src/primitives/radix_sort.hpp"
+#include "src/primitives/scan.hpp"
+
+namespace clinch::detail {
+
+/// Columns of an answer in slots, as COLUMN_... of cl/narrow_phase/driver.clh.
+constexpr std::size_t answer_columns = 8;
+constexpr std::size_t rest_columns = 7;
+
+/// An answer in float64, from the host.
+struct HostAnswer {
+    std::uint32_t a, b;
+    double distance, error;
+    double normal[3], point[3];  ///< point of a, from a's position
+    bool hit;
+};
+
+/// Some pairs of one bucket, on the device: their numbers among the pairs from `first` on (not listed: they are
+/// their own), and the slots of their answers.
+struct BucketSlice {
+    std::uint32_t first = 0, count = 0, first_slot = 0;
+    bool listed = false;
+    const Buffer* numbers = nullptr;
+};
+
+/// Groups a chunk of pairs by bucket and puts the answers back into their order. Its memory is a few bytes a pair and that of
+/// the answers; it is kept from chunk to chunk.
+class Slots {
+public:
+    explicit Slots(Device& device) : device_(device), sort_(device), scan_(device) {}
+
+    /// Most pairs a chunk may have.
+    static constexpr std::size_t chunk_pairs = std::size_t{1} << 18;
+
+    /// Sends the pairs, counts them by bucket, sorts them by it if there are several, and numbers their slots. Waits. A pair
+    /// without a bucket is InvalidArgument. `with_rests`: answers may be float64.
+    void group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_t bodies, bool with_rests);
+    /// The pairs of bucket k; none of them: nothing is to be done.
+    const BucketSlice& bucket(std::size_t k) const { return slices_[k]; }
+    std::size_t bucket_count() const { return slices_.size(); }
+
+    /// Of the bucket, the pairs whose answers are undecided, as a slice with slots of its own, which take the place of the old
+    /// ones. Waits.
+    BucketSlice undecided(const BucketSlice& bucket);
+    /// Stores answers of the host in the slots of a slice, one a pair.
+    void put(const BucketSlice& slice, const std::vector<HostAnswer>& answers);
+    /// Numbers of a slice's pairs, on the host. Waits.
+    std::vector<std::uint32_t> numbers(const BucketSlice& slice);
+
+    /// What kernels take.
+    const Buffer& pairs() const { return pairs_; }
+    const Buffer& answers() const { return answers_; }
+    const Buffer& hits() const { return hits_; }
+    std::uint64_t stride() const { return stride_; }
+
+    /// Gathers the contacts into contacts(): a, b, answer_columns, and, with rests, rest_columns, each
+    /// contact_stride() long. Returns how many there are. Waits.
+    std::uint32_t gather();
+    const Buffer& contacts() const { return contacts_; }
+    std::uint64_t contact_stride() const { return contact_stride_; }
+
+private:
+    std::uint32_t runs_for(std::uint32_t count) const;
+    [[noreturn]] void throw_no_bucket(View<const Pair> pairs);
+    void number_slots(const std::vector<std::uint64_t>& counts);
+
+    Device& device_;
+    RadixSort sort_;
+    Scan scan_;
+    Kernel keys_kernel_, slots_kernel_, open_count_, open_fill_, open_slots_, count_kernel_, gather_kernel_;
+    Buffer pairs_, table_, keys_, counts_, numbers_, firsts_, first_slots_, slot_of_, hits_, answers_, open_;
+    Buffer run_counts_, run_offsets_, contacts_;
+    std::vector<BucketSlice> slices_;
+    std::uint32_t n_ = 0, slots_used_ = 0;
+    std::uint64_t stride_ = 0, contact_stride_ = 0;
+    bool with_rests_ = false;
+};
+
+}  // namespace clinch::detail
