@@ -1,0 +1,10 @@
+// Touches of a sphere with a cylinder: see sphere_cylinder.clh for the method, driver.clh for the kernel and its defines.
+#include "narrow_phase/sphere_cylinder.clh"
+#define TOUCH touch_sphere_cylinder
+#define CLASS_A 0u
+#define TURN_A 0
+#define TURN_B 1
+#define SIZES_A 1
+#define SIZES_B 2
+#define NORMAL_B 0
+#include "narrow_phase/driver.clh"
