@@ -5,7 +5,9 @@
 
 #include "clinch/aabb.hpp"
 #include "clinch/broad_phase.hpp"
+#include "clinch/contact.hpp"
 #include "clinch/context.hpp"
+#include "clinch/narrow_phase.hpp"
 #include "clinch/report.hpp"
 #include "clinch/scene.hpp"
 #include "clinch/view.hpp"
@@ -14,6 +16,9 @@ namespace clinch {
 
 struct PipelineOptions {
     BroadPhaseOptions broad_phase;
+    /// Find the contacts of the pairs, too. Off: no narrow phase, and nothing of it is built, allocated or sent.
+    bool contacts = false;
+    NarrowPhaseOptions narrow_phase;
 };
 
 /// What a step found. Views are valid until the pipeline's next step or its end.
@@ -31,6 +36,11 @@ public:
     /// the device when first asked for: 24 bytes a row.
     View<const Aabb> boxes() const;
     const Report& report() const noexcept;
+    /// With PipelineOptions::contacts: the contacts of pairs(), in their order; see NarrowPhase::find. Empty without.
+    View<const Contact> contacts() const noexcept;
+    /// What the narrow phase did in this step; of a step in which nothing had changed the counts are those of the
+    /// step that found the contacts, and the times are 0.
+    const NarrowReport& narrow_report() const noexcept;
 
     /// The library's own view; not for users.
     struct Impl;
@@ -40,18 +50,20 @@ private:
     Impl* impl_;
 };
 
-/// Steps scenes: bounds, then broad phase. Keeps boxes, pairs and buffers between steps, so that stepping
-/// the same scene again costs only what changed in it, and next to nothing when nothing did.
+/// Steps scenes: bounds, then broad phase, then, if asked for, narrow phase. Keeps boxes, pairs, contacts and buffers
+/// between steps, so that stepping the same scene again costs only what changed in it, and next to nothing when
+/// nothing did.
 class Pipeline {
 public:
-    /// `context` must outlive this object. Builds nothing yet. Errors as BroadPhase.
+    /// `context` must outlive this object. Builds nothing yet. Errors as BroadPhase and NarrowPhase.
     explicit Pipeline(Context& context, const PipelineOptions& options = {});
     ~Pipeline();
     Pipeline(Pipeline&& other) noexcept;
     Pipeline& operator=(Pipeline&& other) noexcept;
 
-    /// Finds the candidate pairs of the scene as it stands. Meaningless bodies are left out and
-    /// listed in the report. Throws Error; the next step then starts afresh.
+    /// Finds the candidate pairs, and the contacts, of the scene as it stands. Meaningless bodies are left out and
+    /// listed in the report. With PipelineOptions::contacts a pair with a mesh is InvalidArgument. Throws Error; the
+    /// next step then starts afresh.
     const StepResult& step(const Scene& scene);
 
 private:

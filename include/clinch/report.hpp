@@ -16,6 +16,7 @@ struct StageTimes {
     double upload = 0.0;    ///< gathering changed rows and sending them
     double bounds = 0.0;    ///< making boxes
     double broad = 0.0;     ///< finding pairs
+    double narrow = 0.0;    ///< finding contacts, bringing them to the host included
     double download = 0.0;  ///< making the pairs readable on the host
 };
 
@@ -36,14 +37,16 @@ struct Skipped {
 struct Report {
     std::uint64_t bodies = 0;  ///< rejected ones included
     std::uint64_t pairs = 0;
-    std::uint64_t box_tests = 0;  ///< box against box tests done by the broad phase
-    std::string algorithm;        ///< the broad phase that ran: its name in the registry, or "incremental"
+    std::uint64_t contacts = 0;          ///< 0 where none were asked for
+    std::uint64_t tolerance_missed = 0;  ///< contacts whose error is above NarrowPhaseOptions::tolerance
+    std::uint64_t box_tests = 0;         ///< box against box tests done by the broad phase
+    std::string algorithm;               ///< the broad phase that ran: its name in the registry, or "incremental"
     StageTimes ms;
     Skipped skipped;
     std::vector<Rejection> rejected;      ///< ascending by body
     std::uint64_t peak_device_bytes = 0;  ///< most memory held on devices so far, summed over them
-    /// Most host memory so far of what grows with boxes and pairs and is no device's memory: lists of pairs, and what
-    /// is kept of them from call to call.
+    /// Most host memory so far of what grows with boxes and pairs and is no device's memory: lists of pairs, what is
+    /// kept of them from call to call, and contacts.
     std::uint64_t peak_host_bytes = 0;
 };
 

@@ -20,6 +20,7 @@ struct StepResult::Impl {
           tell_events(options.broad_phase.events),
           result(*this) {
         detail::check_options(context.impl(), options.broad_phase);
+        if (options.contacts) narrow.emplace(context, options.narrow_phase);
     }
     // Events are those of the pairs with planes, told here.
     static BroadPhaseOptions without_events(BroadPhaseOptions options) {
@@ -46,6 +47,10 @@ struct StepResult::Impl {
     bool on_device = false;    // where the boxes of the last step are
     std::size_t rows = 0;
     std::optional<std::vector<Aabb>> boxes_read;
+    std::optional<NarrowPhase> narrow;  // if contacts are asked for
+    View<const Contact> contacts;
+    NarrowReport narrow_report;
+    std::uint64_t most_contacts = 0;
     Report report;
     StepResult result;
 
@@ -58,6 +63,7 @@ struct StepResult::Impl {
     View<const Pair> find_on_device(const Scene& scene, const detail::AlgorithmRow& row, std::size_t& changed);
     View<const Pair> find_on_host(const Scene& scene, const detail::AlgorithmRow& row, std::size_t& changed);
     void add_plane_pairs(const Scene& scene);
+    void find_contacts(const Scene& scene);
     View<const Aabb> boxes();
 };
 
@@ -65,6 +71,8 @@ void StepResult::Impl::start_afresh() {
     device_bounds.reset();
     host_bounds.reset();
     pairs = {};
+    contacts = {};
+    narrow_report = {};
     merged.clear();
     boxes_read.reset();
     rows = 0;
@@ -152,9 +160,21 @@ bool StepResult::Impl::nothing_changed(const Scene& scene) const {
            stepped_version == scene.version();
 }
 
+void StepResult::Impl::find_contacts(const Scene& scene) {
+    contacts = narrow->find(scene, pairs);
+    narrow_report = narrow->report();
+    report.contacts = contacts.size();
+    report.tolerance_missed = narrow_report.tolerance_missed;
+    report.ms.narrow = narrow_report.ms.total;
+    report.peak_device_bytes = std::max(report.peak_device_bytes, narrow_report.peak_device_bytes);
+    most_contacts = std::max(most_contacts, report.contacts);
+    report.peak_host_bytes += most_contacts * sizeof(Contact);
+}
+
 // The last step's result once more.
 void StepResult::Impl::step_again() {
     report.ms = {};
+    narrow_report.ms = {};
     report.box_tests = 0;
     report.skipped = {};
     report.skipped.bounds = rows;
@@ -170,6 +190,7 @@ void StepResult::Impl::step(const Scene& scene) {
         return;
     }
     pairs = {};
+    contacts = {};
     boxes_read.reset();
     rows = scene.row_count();
     report = Report{};
@@ -191,7 +212,8 @@ void StepResult::Impl::step(const Scene& scene) {
     add_plane_pairs(scene);
     report.bodies = scene.body_count();
     report.pairs = pairs.size();
-    if (tell_events) events.update(pairs);
+    if (narrow) find_contacts(scene);
+    if (tell_events) events.update(pairs);  // last, since a step that fails counts for none
     stepped_identity = scene.impl().identity;
     stepped_version = scene.version();
     stepped_rows = rows;
@@ -218,6 +240,12 @@ View<const Pair> StepResult::removed() const noexcept {
 }
 View<const Aabb> StepResult::boxes() const {
     return impl_->boxes();
+}
+View<const Contact> StepResult::contacts() const noexcept {
+    return impl_->contacts;
+}
+const NarrowReport& StepResult::narrow_report() const noexcept {
+    return impl_->narrow_report;
 }
 const Report& StepResult::report() const noexcept {
     return impl_->report;
