@@ -21,9 +21,9 @@ using clinch::Pair;
 using clinch::io::InputError;
 using clinch::io::OutputError;
 using clinch::io::OutputFile;
-using clinch::io::PairFormat;
+using clinch::io::TableFormat;
 
-std::string written(const TempFolder& folder, PairFormat format, const std::vector<Pair>& pairs) {
+std::string written(const TempFolder& folder, TableFormat format, const std::vector<Pair>& pairs) {
     OutputFile file(folder / "out");
     clinch::io::write_pairs(file, format, pairs);
     file.commit();
@@ -35,11 +35,11 @@ std::string written(const TempFolder& folder, PairFormat format, const std::vect
 TEST_CASE("pairs are written as .npy and .csv", "[host]") {
     const TempFolder folder;
     const std::vector<Pair> pairs{{0, 1}, {0, 4294967294u}, {10, 200}};
-    CHECK(written(folder, PairFormat::Csv, pairs) == "a,b\n0,1\n0,4294967294\n10,200\n");
-    CHECK(written(folder, PairFormat::Csv, {}) == "a,b\n");
-    CHECK(written(folder, PairFormat::Npy, pairs) ==
+    CHECK(written(folder, TableFormat::Csv, pairs) == "a,b\n0,1\n0,4294967294\n10,200\n");
+    CHECK(written(folder, TableFormat::Csv, {}) == "a,b\n");
+    CHECK(written(folder, TableFormat::Npy, pairs) ==
           npy("<u4", "(3, 2)", bytes<std::uint32_t>({0, 1, 0, 4294967294u, 10, 200})));
-    CHECK(written(folder, PairFormat::Npy, {}) == npy("<u4", "(0, 2)", ""));
+    CHECK(written(folder, TableFormat::Npy, {}) == npy("<u4", "(0, 2)", ""));
 }
 
 TEST_CASE("a long .csv loses no row between blocks", "[host]") {
@@ -51,17 +51,17 @@ TEST_CASE("a long .csv loses no row between blocks", "[host]") {
         pairs.push_back({i * 85899u, 4294967295u - i});
         expected << pairs.back().a << ',' << pairs.back().b << '\n';
     }
-    CHECK(written(folder, PairFormat::Csv, pairs) == expected.str());
+    CHECK(written(folder, TableFormat::Csv, pairs) == expected.str());
 }
 
 TEST_CASE("the format follows from the target's name", "[host]") {
-    CHECK(clinch::io::pair_format("a/b.npy") == PairFormat::Npy);
-    CHECK(clinch::io::pair_format("B.CSV") == PairFormat::Csv);
-    CHECK(clinch::io::pair_format("-") == PairFormat::Csv);
+    CHECK(clinch::io::table_format("a/b.npy") == TableFormat::Npy);
+    CHECK(clinch::io::table_format("B.CSV") == TableFormat::Csv);
+    CHECK(clinch::io::table_format("-") == TableFormat::Csv);
     for (const char* const name : {"a.txt", "a", "", ".npy", "npy"}) {
         INFO(name);
-        CHECK_THROWS_AS(clinch::io::pair_format(name), InputError);
-        CHECK_THROWS_WITH(clinch::io::pair_format(name), Contains(".npy, .csv, or -"));
+        CHECK_THROWS_AS(clinch::io::table_format(name), InputError);
+        CHECK_THROWS_WITH(clinch::io::table_format(name), Contains(".npy, .csv, or -"));
     }
 }
 

@@ -36,8 +36,7 @@ TEST_CASE("wrong usage is refused", "[program]") {
     const std::string out = folder / "out.csv";
     const std::vector<Row> rows{
         {{}, "subcommand is required"},
-        {{"contacts", boxes, "-o", out}, "'contacts' is no command; devices, pairs, scene are accepted"},
-        {{"simulate", boxes, "-o", out}, "'simulate' is no command"},
+        {{"simulate", boxes, "-o", out}, "'simulate' is no command; devices, pairs, contacts, scene are accepted"},
         {{"calibrate"}, "'calibrate' is no command"},
         {{"pairs"}, "INPUT is required"},
         {{"pairs", boxes}, "--output is required"},
@@ -64,7 +63,18 @@ TEST_CASE("wrong usage is refused", "[program]") {
         {{"pairs", boxes, "-o", boxes}, "-o is the input"},
         {{"pairs", boxes, "-o", out, "--stats", boxes}, "--stats is the input"},
         {{"pairs", boxes, "-o", out, "--stats", out}, "--stats is the target of -o"},
-        {{"scene", "unifrom", "--count", "3", "-o", folder / "s.npy"}, "'unifrom' is no kind of box scene; uniform"},
+        {{"pairs", boxes, "-o", out, "--tolerance", "0"}, "--tolerance is '0'; a number above 0 is accepted"},
+        {{"contacts", boxes}, "--output is required"},
+        {{"contacts", boxes, "-o", out, "--precision", "0.5", "--tolerance", "0.1"},
+         "--precision excludes --tolerance"},
+        {{"contacts", boxes, "-o", out, "--tolerance", "0"}, "--tolerance is '0'; a number above 0 is accepted"},
+        {{"contacts", boxes, "-o", out, "--precision", "2"}, "--precision is '2'; a number from 0 to 1 is accepted"},
+        {{"contacts", boxes, "-o", out, "--contacts-per-pair", "9"}, "--contacts-per-pair is '9'"},
+        {{"contacts", boxes, "-o", out, "--algorithm", "brutal"}, "--algorithm is 'brutal'; auto, brute"},
+        {{"contacts", boxes, "-o", folder / "out.json"}, "ending '.json'; .npy, .csv, or -"},
+        {{"contacts", boxes, "-o", boxes}, "-o is the input"},
+        {{"contacts", boxes, "-o", out, "--stats", out}, "--stats is the target of -o"},
+        {{"scene", "unifrom", "--count", "3", "-o", folder / "s.npy"}, "'unifrom' is no kind of scene; uniform"},
         {{"scene", "uniform", "-o", folder / "s.npy"}, "--count is required"},
         {{"scene", "uniform", "--count", "3"}, "--output is required"},
         {{"scene", "uniform", "--count", "4294967296", "-o", folder / "s.npy"}, "0 to 4294967295 is accepted"},
@@ -74,6 +84,7 @@ TEST_CASE("wrong usage is refused", "[program]") {
         {{"scene", "uniform", "--count", "3", "--seed", "x", "-o", folder / "s.npy"}, "--seed is 'x'"},
         {{"scene", "uniform", "--count", "3", "-o", folder / "s.json"}, ".npy is accepted"},
         {{"scene", "uniform", "--count", "3", "-o", "-"}, ".npy is accepted"},
+        {{"scene", "mix", "--count", "3", "-o", folder / "s.npy"}, "the ending .json is accepted for the kind mix"},
     };
     for (const Row& row : rows) check_refused(row.arguments, row.message);
     CHECK(folder.names() == std::vector<std::string>{"b.npy"});

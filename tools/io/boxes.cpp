@@ -20,9 +20,8 @@ std::string number_name(std::size_t i) {
     return std::string(i < 3 ? "min " : "max ") + "xyz"[i % 3];
 }
 
-/// Why a row of six numbers is no box, or nothing.
 template <class Number>
-std::string why_no_box(const std::array<Number, 6>& row) {
+std::string why_not(const std::array<Number, 6>& row) {
     for (std::size_t i = 0; i < 6; ++i) {
         if (!std::isfinite(row[i])) return number_name(i) + " is " + to_text(row[i]) + " and must be finite";
         if (std::abs(row[i]) > Number{float_max})
@@ -53,6 +52,13 @@ float round_up(double value) {
 }
 
 }  // namespace
+
+std::string why_no_box(const std::array<float, 6>& min_max) {
+    return why_not(min_max);
+}
+std::string why_no_box(const std::array<double, 6>& min_max) {
+    return why_not(min_max);
+}
 
 Aabb round_outward(const std::array<double, 6>& v) {
     return {{round_down(v[0]), round_down(v[1]), round_down(v[2])}, {round_up(v[3]), round_up(v[4]), round_up(v[5])}};

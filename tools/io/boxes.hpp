@@ -20,6 +20,10 @@ struct BoxFile {
 /// infinite number, min > max or a number beyond float32's range is rejected. InputError as NpyFile.
 BoxFile read_boxes(const std::string& path);
 
+/// Why a row, min x y z and max x y z, is rejected, as one clause ("min y is nan and must be finite"), or nothing.
+std::string why_no_box(const std::array<float, 6>& min_max);
+std::string why_no_box(const std::array<double, 6>& min_max);
+
 /// The smallest box of float32 numbers that holds the given one: min x y z, max x y z, finite and
 /// within float32's range.
 Aabb round_outward(const std::array<double, 6>& min_max);

@@ -176,8 +176,9 @@ template std::vector<double> NpyFile::read<double>();
 template std::vector<std::uint32_t> NpyFile::read<std::uint32_t>();
 
 std::string npy_header(std::string_view descr, const std::vector<std::uint64_t>& shape) {
-    std::string text =
-        "{'descr': '" + std::string(descr) + "', 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
+    const bool columns = !descr.empty() && descr.front() == '[';
+    const std::string type = columns ? std::string(descr) : "'" + std::string(descr) + "'";
+    std::string text = "{'descr': " + type + ", 'fortran_order': False, 'shape': " + shape_text(shape) + ", }";
     const std::size_t start = magic.size() + 4;  // magic, version, length
     const std::size_t total = (start + text.size() + 1 + 63) / 64 * 64;
     text.append(total - start - text.size() - 1, ' ');

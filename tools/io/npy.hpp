@@ -50,7 +50,8 @@ private:
 };
 
 /// The text that stands before the data of a C-order .npy file of version 1: `descr` is NumPy's name of
-/// the type ("<u4"). Its length is a multiple of 64.
+/// the type ("<u4") or, of a structured array, its list of columns ("[('a', '<u4'), ...]"). Its length is a multiple
+/// of 64.
 std::string npy_header(std::string_view descr, const std::vector<std::uint64_t>& shape);
 
 }  // namespace clinch::io

@@ -14,6 +14,8 @@ struct LoadedScene {
     /// Bodies the scene rejects for a cause that only the file shows (a mesh's scale <= 0), ascending: this
     /// reason is the better one.
     std::vector<Rejection> reasons;
+    /// How far each body's shape may lie from the one in the file, one a row; empty where all are the file's.
+    std::vector<double> slack;
 };
 
 /// Reads a scene .json file or a mesh file, by its ending; another ending is InputError, as is every

@@ -15,6 +15,7 @@ struct Command {
 
 Command add_devices_command(CLI::App& app);
 Command add_pairs_command(CLI::App& app);
+Command add_contacts_command(CLI::App& app);
 Command add_scene_command(CLI::App& app);
 
 }  // namespace clinch::program

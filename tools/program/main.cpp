@@ -23,7 +23,7 @@ int report(const std::string& message, int status) {
     return status;
 }
 
-using Commands = std::array<Command, 3>;
+using Commands = std::array<Command, 4>;
 
 /// What is wrong with the command line, and where to read what is right.
 std::string usage_sentence(const CLI::App& app, const Commands& commands, const CLI::ParseError& e) {
@@ -42,7 +42,8 @@ int run(int count, const char* const* arguments) {
     CLI::App app("Finds which of very many 3D bodies touch, on OpenCL devices.", "clinch");
     app.set_version_flag("--version", CLINCH_VERSION);
     app.require_subcommand(1);
-    const Commands commands{add_devices_command(app), add_pairs_command(app), add_scene_command(app)};
+    const Commands commands{add_devices_command(app), add_pairs_command(app), add_contacts_command(app),
+                            add_scene_command(app)};
     try {
         app.parse(count, arguments);
     } catch (const CLI::Success& asked_for_text) {

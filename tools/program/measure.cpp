@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <initializer_list>
 #include <vector>
 
 namespace clinch::program {
@@ -13,17 +14,16 @@ double median(std::vector<double> values) {
     return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
-StageTimes medians(const std::vector<StageTimes>& runs) {
-    const auto of = [&](double StageTimes::*stage) {
+/// The median of each of `stages` by itself.
+template <class Times>
+Times medians(const std::vector<Times>& runs, std::initializer_list<double Times::*> stages) {
+    Times result;
+    for (double Times::*const stage : stages) {
         std::vector<double> values;
         values.reserve(runs.size());
-        for (const StageTimes& run : runs) values.push_back(run.*stage);
-        return median(values);
-    };
-    StageTimes result;
-    for (const auto stage :
-         {&StageTimes::total, &StageTimes::upload, &StageTimes::bounds, &StageTimes::broad, &StageTimes::download})
-        result.*stage = of(stage);
+        for (const Times& run : runs) values.push_back(run.*stage);
+        result.*stage = median(values);
+    }
     return result;
 }
 
@@ -32,12 +32,19 @@ StageTimes medians(const std::vector<StageTimes>& runs) {
 Measured measure(std::uint64_t repeat, const std::function<StepOutcome(std::uint64_t)>& step) {
     Measured measured;
     std::vector<StageTimes> runs;
+    std::vector<NarrowTimes> narrow_runs;
     for (std::uint64_t run = 0; run <= repeat; ++run) {
         measured.last = step(run);
         if (run == 0) measured.first_ms = measured.last.report.ms.total;
-        if (run > 0 || repeat == 0) runs.push_back(measured.last.report.ms);
+        if (run == 0 && repeat > 0) continue;
+        runs.push_back(measured.last.report.ms);
+        if (measured.last.narrow) narrow_runs.push_back(measured.last.narrow->ms);
     }
-    measured.median = medians(runs);
+    measured.median = medians(runs, {&StageTimes::total, &StageTimes::upload, &StageTimes::bounds, &StageTimes::broad,
+                                     &StageTimes::narrow, &StageTimes::download});
+    if (!narrow_runs.empty())
+        measured.narrow = medians(narrow_runs, {&NarrowTimes::total, &NarrowTimes::upload, &NarrowTimes::buckets,
+                                                &NarrowTimes::routines, &NarrowTimes::gather});
     return measured;
 }
 

@@ -7,6 +7,7 @@
 
 #include "clinch/broad_phase.hpp"
 #include "clinch/device.hpp"
+#include "clinch/narrow_phase.hpp"
 
 namespace clinch::program {
 
@@ -28,18 +29,19 @@ struct StepTexts {
 struct StepOptions {
     DeviceFilter devices;
     std::string algorithm;
-    bool host_only = false;  ///< the algorithm needs no device
+    bool host_only = false;  ///< the broad phase needs no device
     Order order = Order::Sorted;
+    NarrowPhaseOptions narrow;
     std::uint64_t repeat = 1;
     std::string stats;  ///< empty: none asked for
     bool strict = false;
 };
 
-/// Adds the options to a subcommand; `texts` must outlive the parsing.
-void add_step_options(CLI::App& command, StepTexts& texts);
+/// Adds the options to a subcommand, which has a narrow phase if `narrow`; `texts` must outlive the parsing.
+void add_step_options(CLI::App& command, StepTexts& texts, bool narrow);
 
 /// Reads and checks all of them, also those that matter to the narrow phase alone. Throws io::InputError or
 /// Error InvalidArgument, which names the option, what was found and what is accepted.
-StepOptions check_step_options(const StepTexts& texts);
+StepOptions check_step_options(const StepTexts& texts, bool narrow);
 
 }  // namespace clinch::program

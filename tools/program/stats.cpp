@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 namespace clinch::program {
 namespace {
@@ -45,6 +46,20 @@ Json rejections(const std::vector<Rejection>& rejected) {
     return list;
 }
 
+/// What a command with a narrow phase tells besides.
+void add_narrow(Json& stats, const NarrowReport& report, const NarrowTimes& ms) {
+    Json buckets = Json::array();
+    for (const BucketReport& bucket : report.buckets)
+        buckets.push_back({{"classes", bucket.classes},
+                           {"routine", bucket.routine},
+                           {"pairs", bucket.pairs},
+                           {"again", bucket.again}});
+    stats["buckets"] = std::move(buckets);
+    stats["ms_narrow"] = {
+        {"upload", ms.upload}, {"buckets", ms.buckets}, {"routines", ms.routines}, {"gather", ms.gather}};
+    stats["skipped"]["cells"] = report.cells_skipped;
+}
+
 }  // namespace
 
 std::string stats_text(const Measured& measured, const Context& context, const StatsInput& input) {
@@ -55,7 +70,7 @@ std::string stats_text(const Measured& measured, const Context& context, const S
     for (const DeviceReport& r : reports) build_ms += r.build_ms;
     const Json stats = {{"bodies", report.bodies},
                         {"pairs", report.pairs},
-                        {"contacts", 0},
+                        {"contacts", report.contacts},
                         {"frames", 1},
                         {"box_tests", report.box_tests},
                         {"algorithm", report.algorithm},
@@ -65,7 +80,7 @@ std::string stats_text(const Measured& measured, const Context& context, const S
                           {"upload", ms.upload},
                           {"bounds", ms.bounds},
                           {"broad", ms.broad},
-                          {"narrow", 0.0},
+                          {"narrow", ms.narrow},
                           {"download", ms.download}}},
                         {"ms_once", {{"read", input.read_ms}, {"build", build_ms}, {"first", measured.first_ms}}},
                         {"skipped",
@@ -75,9 +90,11 @@ std::string stats_text(const Measured& measured, const Context& context, const S
                           {"pairs_cached", 0},
                           {"kernels_not_built", context.module_count() - modules_used(reports)}}},
                         {"rejected", rejections(input.rejected)},
-                        {"tolerance_missed", 0},
+                        {"tolerance_missed", report.tolerance_missed},
                         {"peak_bytes", {{"host", peak_host_bytes()}, {"device", report.peak_device_bytes}}}};
-    return stats.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    Json all = stats;
+    if (measured.last.narrow) add_narrow(all, *measured.last.narrow, measured.narrow);
+    return all.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 
 }  // namespace clinch::program
