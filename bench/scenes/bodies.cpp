@@ -105,6 +105,7 @@ constexpr std::array<KindRow, 1> kinds{{
 
 std::vector<BodyKind> body_kinds() {
     std::vector<BodyKind> all;
+    all.reserve(kinds.size());
     for (const KindRow& row : kinds) all.push_back(row.kind);
     return all;
 }

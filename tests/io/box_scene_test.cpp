@@ -5,6 +5,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <variant>
@@ -18,7 +19,6 @@
 namespace {
 
 using namespace clinch::test;
-using clinch::Body;
 using clinch::Box;
 using clinch::Vec3;
 using clinch::io::LoadedScene;
@@ -76,7 +76,7 @@ TEST_CASE("float32 boxes become bodies that are those boxes exactly", "[host]") 
     CHECK(loaded.scene.rejected().empty());
     const std::vector<double> wide(numbers.begin(), numbers.end());
     for (std::uint32_t i = 0; i < 2000; ++i) {
-        REQUIRE(corner_off(loaded, i, &wide[6 * i]) == 0.0);
+        REQUIRE(corner_off(loaded, i, &wide[std::size_t{6} * i]) == 0.0);
         REQUIRE(loaded.scene.body({i}).margin == 0.0);
     }
 }
@@ -109,9 +109,9 @@ TEST_CASE("float64 boxes are at most their slack away, and margins cover what ro
     std::size_t uncovered = 0, loose = 0, rounded = 0;
     for (std::uint32_t i = 0; i < count; ++i) {
         const double slack = i < loaded.slack.size() ? loaded.slack[i] : 0.0;
-        const double off = corner_off(loaded, i, &numbers[6 * i]), margin = loaded.scene.body({i}).margin;
+        const double off = corner_off(loaded, i, &numbers[std::size_t{6} * i]), margin = loaded.scene.body({i}).margin;
         double largest = 0.0;
-        for (std::size_t k = 0; k < 6; ++k) largest = std::max(largest, std::fabs(numbers[6 * i + k]));
+        for (std::size_t k = 0; k < 6; ++k) largest = std::max(largest, std::fabs(numbers[std::size_t{6} * i + k]));
         const bool thickened = slack != margin;
         if (off > slack || (!thickened && off > margin)) ++uncovered;
         if (slack > 4.0 * 0x1p-52 * largest && !(i % 7 == 0)) ++loose;
@@ -137,7 +137,7 @@ TEST_CASE("boxes of zero width are given a little, and say so", "[host]") {
         INFO(i);
         CHECK(half_of(loaded, i).z == thin[i]);
         CHECK(loaded.scene.body({i}).margin == 0.0);
-        CHECK(loaded.slack[i] >= corner_off(loaded, i, &numbers[6 * i]));
+        CHECK(loaded.slack[i] >= corner_off(loaded, i, &numbers[std::size_t{6} * i]));
         CHECK(loaded.slack[i] <= 1.01 * axes[i] * thin[i]);
     }
     CHECK(half_of(loaded, 0).x == 1.0);

@@ -151,8 +151,9 @@ TEST_CASE("float64 boxes keep the promise that float32 could not", "[program]") 
     std::vector<bool> there(5, false);
     for (const Row& row : rows) {
         REQUIRE(row.b == row.a + 1);
-        there[row.a / 2] = true;
-        CHECK(std::fabs(row.distance - moves[row.a / 2] * step) <= row.error);
+        const std::size_t pair = row.a / 2;
+        there[pair] = true;
+        CHECK(std::fabs(row.distance - moves[pair] * step) <= row.error);
         CHECK(row.error < 1e-8);
     }
     CHECK(there[0]);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <string>
 #include <variant>
 #include <vector>
@@ -15,9 +14,14 @@
 namespace clinch::io {
 namespace {
 
-template <class T>
-bool same_bits(const T& a, const T& b) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
+bool same_bits(double a, double b) {
+    return a == b && std::signbit(a) == std::signbit(b);
+}
+bool same_bits(const Vec3& a, const Vec3& b) {
+    return same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
+}
+bool same_bits(const Quat& a, const Quat& b) {
+    return same_bits(a.w, b.w) && same_bits(a.x, b.x) && same_bits(a.y, b.y) && same_bits(a.z, b.z);
 }
 
 /// Writes the fields of one body.

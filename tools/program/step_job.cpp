@@ -96,6 +96,10 @@ auto of_input(const std::string& path, const Work& work) {
     }
 }
 
+Scene copy_of(const Scene& scene) {
+    return scene;
+}
+
 }  // namespace
 
 void add_step_job_options(CLI::App& command, StepJobTexts& texts, bool narrow) {
@@ -148,7 +152,7 @@ int run_step_job(const StepJobTexts& texts, const StepJob& job) {
 
 StepOutcome step_anew(const Scene& scene, std::uint64_t run, const std::function<StepOutcome(const Scene&)>& step) {
     if (run == 0) return step(scene);
-    const Scene copy = scene;
+    const Scene copy = copy_of(scene);
     copy.rejected();
     return step(copy);
 }
