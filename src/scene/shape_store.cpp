@@ -17,7 +17,7 @@ void ShapeStore::add(Shape shape, std::uint64_t version) {
     stored.reach = bounds.reach;
     stored.is_plane = bounds.is_plane;
     stored.version = version;
-    shapes_.reserve(shapes_.size() + 1 + shapes_.size() / 2);
+    if (shapes_.size() == shapes_.capacity()) shapes_.reserve(shapes_.size() + 1 + shapes_.size() / 2);
     capacity_.reserve(shapes_.capacity());
     records_.reserve(shapes_.capacity());
     put_vertices(bounds.record, bounds.vertices, 0, 0);

@@ -358,3 +358,16 @@ TEST_CASE("copies are scenes of their own, moved scenes stay the same", "[host]"
     scene = moved;
     CHECK(scene.body_count() == 9);
 }
+
+TEST_CASE("adding many shapes moves them only now and then", "[host]") {
+    Scene scene;
+    scene.add_shape(Sphere{0.5});
+    const Shape* place = &scene.shape({0});
+    int moves = 0;
+    for (int i = 1; i < 20000; ++i) {
+        scene.add_shape(Box{});
+        moves += &scene.shape({0}) == place ? 0 : 1;
+        place = &scene.shape({0});
+    }
+    CHECK(moves < 40);
+}
