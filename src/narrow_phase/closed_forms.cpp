@@ -3,6 +3,7 @@
 
 namespace clinch::detail {
 namespace host {
+#include "cl/narrow_phase/box_box.clh"
 #include "cl/narrow_phase/box_plane.clh"
 #include "cl/narrow_phase/capsule_capsule.clh"
 #include "cl/narrow_phase/capsule_plane.clh"
@@ -27,6 +28,7 @@ CLINCH_HOST_ROUTINE(sphere_capsule)
 CLINCH_HOST_ROUTINE(sphere_cylinder)
 CLINCH_HOST_ROUTINE(sphere_cone)
 CLINCH_HOST_ROUTINE(sphere_plane)
+CLINCH_HOST_ROUTINE(box_box)
 CLINCH_HOST_ROUTINE(box_plane)
 CLINCH_HOST_ROUTINE(capsule_capsule)
 CLINCH_HOST_ROUTINE(capsule_plane)

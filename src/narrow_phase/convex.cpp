@@ -8,14 +8,12 @@ namespace host {
 
 template <int A, int B>
 void host_convex(const host::Side* a, const host::Side* b, host::v3 between, host::Touch* touch) {
-    host::touch_convex_within(static_cast<host::uint>(A), static_cast<host::uint>(B), a, b, between,
-                              std::numeric_limits<double>::max(), 1e-10, touch);
+    host::touch_convex_of(static_cast<host::uint>(A), static_cast<host::uint>(B), a, b, between, touch);
 }
 
 #define CLINCH_HOST_CONVEX(a, b) \
     template void host_convex<a, b>(const host::Side*, const host::Side*, host::v3, host::Touch*);
 CLINCH_HOST_CONVEX(0, 6)
-CLINCH_HOST_CONVEX(1, 1)
 CLINCH_HOST_CONVEX(1, 2)
 CLINCH_HOST_CONVEX(1, 3)
 CLINCH_HOST_CONVEX(1, 4)

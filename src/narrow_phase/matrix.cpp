@@ -18,7 +18,7 @@ constexpr MatrixRow rows[] = {
     {0, 4, "narrow_phase/sphere_cone", "", true, host_sphere_cone},
     {0, 5, "narrow_phase/sphere_plane", "", true, host_sphere_plane},
     {0, 6, "narrow_phase/convex", "-DCONVEX_A=0 -DCONVEX_B=6", false, host_convex<0, 6>},
-    {1, 1, "narrow_phase/convex", "-DCONVEX_A=1 -DCONVEX_B=1", false, host_convex<1, 1>},
+    {1, 1, "narrow_phase/box_box", "", true, host_box_box},
     {1, 2, "narrow_phase/convex", "-DCONVEX_A=1 -DCONVEX_B=2", false, host_convex<1, 2>},
     {1, 3, "narrow_phase/convex", "-DCONVEX_A=1 -DCONVEX_B=3", false, host_convex<1, 3>},
     {1, 4, "narrow_phase/convex", "-DCONVEX_A=1 -DCONVEX_B=4", false, host_convex<1, 4>},

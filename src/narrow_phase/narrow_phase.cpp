@@ -191,7 +191,9 @@ void NarrowPhase::Impl::do_bucket(const Scene& scene, View<const Pair> pairs, st
     const BucketSlice open = slots->undecided(bucket);
     if (open.count == 0) return;
     report.buckets[k].again += open.count;
-    if (fp64)
+    // For a few the host is done before float64 kernels are built and fed.
+    constexpr std::uint32_t few_pairs = 1024;
+    if (fp64 && open.count > few_pairs)
         run_float64(scene, k, open);
     else
         run_on_host(scene, pairs, open);

@@ -17,6 +17,7 @@ void host_sphere_capsule(const host::Side* a, const host::Side* b, host::v3 betw
 void host_sphere_cylinder(const host::Side* a, const host::Side* b, host::v3 between, host::Touch* touch);
 void host_sphere_cone(const host::Side* a, const host::Side* b, host::v3 between, host::Touch* touch);
 void host_sphere_plane(const host::Side* a, const host::Side* b, host::v3 between, host::Touch* touch);
+void host_box_box(const host::Side* a, const host::Side* b, host::v3 between, host::Touch* touch);
 void host_box_plane(const host::Side* a, const host::Side* b, host::v3 between, host::Touch* touch);
 void host_capsule_capsule(const host::Side* a, const host::Side* b, host::v3 between, host::Touch* touch);
 void host_capsule_plane(const host::Side* a, const host::Side* b, host::v3 between, host::Touch* touch);

@@ -82,7 +82,7 @@ TEST_CASE("float64 answers are the same bytes on every device", "[device]") {
     REQUIRE(expected.size() > 300);
     for (const Contact& c : expected) check_sound(c);
     for (std::uint32_t i = 0; i < list_devices().size(); ++i)
-        for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) {
+        for (const std::uint32_t lanes : {1u, 16u}) {
             Context context = test::with_lanes(i, lanes);
             INFO("device " << i << ", lanes " << lanes);
             const std::vector<Contact> answers = found(context, with_precision(1.0), scene, pairs);
@@ -105,7 +105,7 @@ TEST_CASE("float32 answers keep their promise, and what they leave open float64 
         const Scene scene = test::random_bodies(70, 2.5, seed == 73 ? Vec3{1e5, -1e5, 1e5} : Vec3{}, random);
         const std::vector<Pair> pairs = test::all_pairs(scene);
         for (std::uint32_t i = 0; i < list_devices().size(); ++i)
-            for (const std::uint32_t lanes : {1u, 8u, 16u}) {
+            for (const std::uint32_t lanes : {1u, 16u}) {
                 Context context = test::with_lanes(i, lanes);
                 INFO("device " << i << ", lanes " << lanes);
                 check_against_exact(context, 0.0, scene, pairs);
@@ -189,7 +189,10 @@ TEST_CASE("gaps within the margins are told", "[device]") {
     const std::vector<Contact> contacts = found(context, {}, scene, pairs);
     CHECK(contacts.size() >= 120);
     CHECK(contacts.size() <= 121);  // at 0.12 it is a matter of rounding
-    for (const Contact& c : contacts) CHECK(std::abs(c.distance - 0.0005 * c.a) <= c.error);
+    for (const Contact& c : contacts) {
+        const double gap = (scene.body({c.b}).pose.position.x - scene.body({c.a}).pose.position.x) - 1.0;
+        CHECK(std::abs(c.distance - gap) <= c.error);
+    }
 }
 
 TEST_CASE("a tolerance is met or its missing is told", "[device]") {
