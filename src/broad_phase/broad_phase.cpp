@@ -47,6 +47,12 @@ void check_count(std::uint64_t count) {
                     "there are " + std::to_string(count) + " boxes; at most 4294967295 are accepted");
 }
 
+// The boxes that the choice may look at: none where bodies that cannot move are named, which `bvh` keeps from call to
+// call and no look at the boxes shows.
+View<const Aabb> seen(View<const Aabb> boxes, const FilterColumns& filters) {
+    return filters.motion == nullptr ? boxes : View<const Aabb>();
+}
+
 }  // namespace
 
 void detail::check_options(const Context::Impl& context, const BroadPhaseOptions& options) {
@@ -63,11 +69,11 @@ BroadPhase::Impl::Impl(Context& c, BroadPhaseOptions o) : context(c.impl()), opt
     detail::check_options(context, options);
 }
 
-const detail::AlgorithmRow& BroadPhase::Impl::choose(std::uint64_t count) const {
+const detail::AlgorithmRow& BroadPhase::Impl::choose(std::uint64_t count, View<const Aabb> boxes) const {
     if (options.algorithm != "auto") return detail::algorithm_named(options.algorithm);
     const std::uint64_t last_pairs = count == report.bodies ? report.pairs : 0;
     return detail::choose_algorithm(count, last_pairs,
-                                    context.infos.empty() ? nullptr : &context.infos[context.primary()]);
+                                    context.infos.empty() ? nullptr : &context.infos[context.primary()], boxes);
 }
 
 detail::Device& BroadPhase::Impl::device() const {
@@ -197,7 +203,7 @@ BroadPhase& BroadPhase::operator=(BroadPhase&& other) noexcept = default;
 View<const Pair> BroadPhase::find(View<const Aabb> boxes, const FilterColumns& filters) {
     check_count(boxes.size());
     detail::BoxInput input(boxes, impl_->staging);
-    return impl_->find(impl_->choose(boxes.size()), input, {filters, 0}, true);
+    return impl_->find(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
 }
 
 View<const Pair> BroadPhase::update(View<const Aabb> boxes, View<const std::uint32_t> changed,
@@ -238,7 +244,7 @@ std::uint64_t BroadPhase::stream(View<const Aabb> boxes, const std::function<voi
     detail::BoxInput input(boxes, impl_->staging);
     impl_->pairs.clear();
     impl_->pairs.stream_to(take, impl_->options.stream_bytes / sizeof(Pair));
-    impl_->run(impl_->choose(boxes.size()), input, {filters, 0}, true);
+    impl_->run(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
     return impl_->report.pairs;
 }
 
@@ -247,7 +253,7 @@ std::uint64_t BroadPhase::count(View<const Aabb> boxes, const FilterColumns& fil
     detail::BoxInput input(boxes, impl_->staging);
     impl_->pairs.clear();
     impl_->pairs.count_only();
-    impl_->run(impl_->choose(boxes.size()), input, {filters, 0}, true);
+    impl_->run(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
     return impl_->report.pairs;
 }
 

@@ -33,8 +33,8 @@ struct BroadPhase::Impl {
     std::uint64_t listed_boxes = 0;   // boxes of the last call, if `pairs` is its list; else 0
 
     Impl(Context& c, BroadPhaseOptions o);
-    /// The algorithm for `count` boxes, given what the last report says.
-    const detail::AlgorithmRow& choose(std::uint64_t count) const;
+    /// The algorithm for `count` boxes, given what the last report says and, if they are in host memory, `boxes`.
+    const detail::AlgorithmRow& choose(std::uint64_t count, View<const Aabb> boxes = {}) const;
     /// The device that algorithms work on; opens it.
     detail::Device& device() const;
     /// Finds the pairs of `boxes` with `row`; boxes that are no boxes are listed if `list_rejected`.
