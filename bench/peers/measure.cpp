@@ -60,11 +60,16 @@ void next_run(Runner& runner, const Rules& rules) {
     result.chosen = answer.chosen.data();
 }
 
-/// The median of the fastest peer that found all pairs; 0 without one.
+/// The shortest run, which noise lengthens least; 0 without any.
+double least_ms(const Result& result) {
+    return result.ms.empty() ? 0.0 : *std::min_element(result.ms.begin(), result.ms.end());
+}
+
+/// That of the fastest peer that found all pairs; 0 without one.
 double fastest_ms(const std::vector<Runner>& runners) {
     double least = 0.0;
     for (const Runner& runner : runners) {
-        const double ms = runner.result.median_ms();
+        const double ms = least_ms(runner.result);
         if (runner.result.right && ms > 0.0 && (least == 0.0 || ms < least)) least = ms;
     }
     return least;
@@ -117,7 +122,7 @@ Outcome measure(const SceneName& scene, const std::vector<PeerRow>& rows, const 
     for (unsigned round = 0; round < rules.rounds; ++round) {
         const double most_ms = rules.hopeless * fastest_ms(runners);
         for (Runner& runner : runners) {
-            if (most_ms > 0.0 && runner.result.median_ms() > most_ms) continue;
+            if (most_ms > 0.0 && least_ms(runner.result) > most_ms) continue;
             if (round >= runner.rounds || !runner.result.note.empty()) continue;
             if (!runner.worker && !warm_up(runner, scenes, {rules.threads, outcome.pairs}, rules)) continue;
             next_run(runner, rules);

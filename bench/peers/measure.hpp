@@ -22,7 +22,7 @@ struct Rules {
     double most_seconds = 20.0;                         ///< for one run
     std::uint64_t most_bytes = std::uint64_t{8} << 30;  ///< of all peers together; above it they live one at a time
     unsigned threads = 2;
-    /// After a first round, peers that take so many times as long as the fastest are run no more; 0: all are.
+    /// After a first round, peers whose shortest run is so many times that of the fastest are run no more; 0: all are.
     double hopeless = 0.0;
 };
 
