@@ -257,7 +257,7 @@ bool Incremental::search(BoxInput& boxes, const Changes& changes, const FilterIn
     PairList found;
     sink_.collect({{&kernels.grid, 7, count}, {&kernels.movers, 8, count}}, {filters.columns, filter_version_},
                   filters.any() ? bodies_ : count, found, counts);
-    if (live_.size() + found.size() > most_pairs()) return false;
+    if (live_.size() + found.size() > most_pairs() / 2) return false;  // buffers grow by half as much again
     make_room_for_pairs(found.size());
     test(boxes);
     begin_pairs(boxes, found.view());
