@@ -19,7 +19,7 @@ TEST_CASE("device memory stays below 96 bytes a body and 24 a pair, 12 in any or
                     INFO(name << " " << kind << " device " << device);
                     const std::vector<Aabb> boxes = scenes::make_boxes(kind, n, 1);
                     ContextOptions of_device;
-                    of_device.devices.indices = {device};
+                    of_device.devices.indices.assign(1, device);
                     Context context(of_device);
                     BroadPhaseOptions options;
                     options.algorithm = name;
@@ -42,7 +42,7 @@ TEST_CASE("device memory stays below that while pairs are kept", "[device]") {
             for (const Order order : {Order::Sorted, Order::Any}) {
                 scenes::SparseMotion motion(scenes::make_boxes(kind, n, 1), 0.01, 1);
                 ContextOptions of_device;
-                of_device.devices.indices = {device};
+                of_device.devices.indices.assign(1, device);
                 Context context(of_device);
                 BroadPhaseOptions options;
                 options.order = order;
