@@ -1,7 +1,9 @@
 // Frames in which few, all or no boxes move, and results too large for a list. Names: motion/<what>/<boxes>:
 //   full         every frame a search anew, 1 % of the boxes moving (sorted)
 //   update       the same frames through update(), which is told who moved
+//   update-any   the same in any order
 //   update-events  the same, with the pairs that came and went
+//   first        the first update after a search, which begins to keep pairs
 //   none         update() when nothing moved
 //   all          every box moves 1 % of its side (any order), the tree being refitted
 //   step, step-none, step-full  a Pipeline over a Scene of as many cubes: 1 % moved, none, all
@@ -48,6 +50,19 @@ void frames(benchmark::State& state, std::size_t n, double fraction, Way way, Or
         frame();
     }
     state.counters["pairs"] = static_cast<double>(pairs);
+}
+
+void first(benchmark::State& state, std::size_t n) {
+    scenes::SparseMotion motion(scenes::make_boxes("density", n, 1), 0.01, 2);
+    Context context;
+    BroadPhase broad_phase(context);
+    for (auto _ : state) {
+        state.PauseTiming();
+        broad_phase.find(motion.boxes());  // ends what was kept
+        motion.step();
+        state.ResumeTiming();
+        benchmark::DoNotOptimize(broad_phase.update(motion.boxes(), motion.movers()).size());
+    }
 }
 
 void none(benchmark::State& state, std::size_t n) {
@@ -128,6 +143,9 @@ bool add_all() {
                     [=](benchmark::State& s) { frames(s, n, 0.01, Way::Update, Order::Sorted); });
         add_guarded("motion/update-events" + boxes,
                     [=](benchmark::State& s) { frames(s, n, 0.01, Way::UpdateEvents, Order::Sorted); });
+        add_guarded("motion/update-any" + boxes,
+                    [=](benchmark::State& s) { frames(s, n, 0.01, Way::Update, Order::Any); });
+        add_guarded("motion/first" + boxes, [=](benchmark::State& s) { first(s, n); });
         add_guarded("motion/none" + boxes, [=](benchmark::State& s) { none(s, n); });
         add_guarded("motion/all" + boxes, [=](benchmark::State& s) { frames(s, n, 1.0, Way::Full, Order::Any); });
         add_guarded("motion/step" + boxes, [=](benchmark::State& s) { pipeline_frames(s, n, Sent::Movers); });

@@ -17,6 +17,7 @@ public:
     Clinch(const std::string& algorithm, Order order) : broad_phase_(context_, options_of(algorithm, order)) {}
 
     Lists run(View<const Aabb> boxes) override { return {broad_phase_.find(boxes)}; }
+    std::string chosen() const override { return broad_phase_.report().algorithm; }
 
 private:
     Context context_;

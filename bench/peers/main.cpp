@@ -7,9 +7,11 @@
 #include <exception>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "bench/peers/choice.hpp"
 #include "bench/peers/measure.hpp"
 #include "bench/scenes/boxes.hpp"
 
@@ -28,6 +30,9 @@ struct Options {
     double gibibytes = 8.0;
     Rules rules;
     bool list = false;
+    bool choice = false;
+    std::vector<std::string> kinds;
+    std::vector<std::size_t> counts{10000, 100000, 1000000};
 };
 
 const char* name_of(Group group) {
@@ -95,7 +100,8 @@ nlohmann::ordered_json json_of(const Outcome& outcome, const Rules& rules) {
         nlohmann::ordered_json row{
             {"peer", r.row.name}, {"group", name_of(r.row.group)}, {"threads", r.row.threaded ? rules.threads : 1u},
             {"ms", nullptr},      {"runs", r.ms.size()},           {"pairs", r.pairs},
-            {"right", r.right},   {"peak_bytes", r.peak_bytes},    {"note", r.note}};
+            {"right", r.right},   {"peak_bytes", r.peak_bytes},    {"note", r.note},
+            {"chosen", r.chosen}};
         if (!r.ms.empty()) {
             row["ms"] = r.median_ms();
             row["least_ms"] = *std::min_element(r.ms.begin(), r.ms.end());
@@ -131,6 +137,16 @@ void add_options(CLI::App& app, Options& o) {
     app.add_option("--memory", o.gibibytes, "GiB all peers may take together; above it they live one at a time")
         ->check(CLI::Range(0.0, 1e5))
         ->capture_default_str();
+    app.add_flag("--choice", o.choice,
+                 "Instead of --scenes: `auto` beside clinch's own algorithms and the libraries on every kind of scene");
+    app.add_option("--kinds", o.kinds, "Kinds of scene for --choice (default: all)")->delimiter(',');
+    app.add_option("--counts", o.counts, "Boxes of the scenes of --choice, ascending")
+        ->delimiter(',')
+        ->capture_default_str();
+    app.add_option("--hopeless", o.rules.hopeless,
+                   "After a first round, peers so many times slower than the fastest run no more; 0: all do "
+                   "(4 for --choice)")
+        ->check(CLI::Range(0.0, 1e5));
     app.add_option("-o,--output", o.output, "JSON to write, anew after each scene");
     app.add_flag("--list", o.list, "Print the peers' names, nothing else");
 }
@@ -150,18 +166,23 @@ int run(const Options& options) {
     std::vector<SceneName> names;
     for (const std::string& text : options.scenes) names.push_back(scene_of(text, options.seed));
     bool right = true;
-    for (const SceneName& scene : names) {
-        const Outcome outcome = measure(scene, rows, rules);
-        print(outcome);
+    const auto done = [&](const Outcome& outcome) {
         for (const Result& r : outcome.results)
             right = right && (r.right || r.ms.empty() || r.row.group == Group::Lossy);
         all["scenes"].push_back(json_of(outcome, rules));
-        if (options.output.empty()) continue;
+        if (options.output.empty()) return;
         std::ofstream file(options.output);
         file << all.dump(1) << '\n';
-        if (!file) {
-            std::fprintf(stderr, "clinch_peers: '%s' is not writable\n", options.output.c_str());
-            return 1;
+        if (!file) throw std::runtime_error("'" + options.output + "' is not writable");
+    };
+    if (options.choice) {
+        if (rules.hopeless == 0.0) rules.hopeless = 4.0;
+        measure_choice(rows, {options.kinds, options.counts, options.seed}, rules, done);
+    } else {
+        for (const SceneName& scene : names) {
+            const Outcome outcome = measure(scene, rows, rules);
+            print(outcome);
+            done(outcome);
         }
     }
     if (!right) std::fprintf(stderr, "clinch_peers: not all peers found the same pairs; see WRONG above\n");

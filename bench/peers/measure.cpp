@@ -57,6 +57,22 @@ void next_run(Runner& runner, const Rules& rules) {
     Result& result = runner.result;
     result.ms.insert(result.ms.end(), answer.ms.begin(), answer.ms.begin() + answer.runs);
     result.peak_bytes = std::max(result.peak_bytes, answer.peak_bytes);
+    result.chosen = answer.chosen.data();
+}
+
+/// The shortest run, which noise lengthens least; 0 without any.
+double least_ms(const Result& result) {
+    return result.ms.empty() ? 0.0 : *std::min_element(result.ms.begin(), result.ms.end());
+}
+
+/// That of the fastest peer that found all pairs; 0 without one.
+double fastest_ms(const std::vector<Runner>& runners) {
+    double least = 0.0;
+    for (const Runner& runner : runners) {
+        const double ms = least_ms(runner.result);
+        if (runner.result.right && ms > 0.0 && (least == 0.0 || ms < least)) least = ms;
+    }
+    return least;
 }
 
 /// Peers are made one at a time, since those that follow are told how many pairs there are.
@@ -103,13 +119,16 @@ Outcome measure(const SceneName& scene, const std::vector<PeerRow>& rows, const 
                         scenes::make_boxes(scene.kind, scene.count, scene.seed + 1000003)};
     bool together = false;
     std::vector<Runner> runners = first_runs(outcome, scenes, rows, rules, together);
-    for (unsigned round = 0; round < rules.rounds; ++round)
+    for (unsigned round = 0; round < rules.rounds; ++round) {
+        const double most_ms = rules.hopeless * fastest_ms(runners);
         for (Runner& runner : runners) {
+            if (most_ms > 0.0 && least_ms(runner.result) > most_ms) continue;
             if (round >= runner.rounds || !runner.result.note.empty()) continue;
             if (!runner.worker && !warm_up(runner, scenes, {rules.threads, outcome.pairs}, rules)) continue;
             next_run(runner, rules);
             if (!together) runner.worker.reset();
         }
+    }
     for (Runner& runner : runners) outcome.results.push_back(std::move(runner.result));
     return outcome;
 }

@@ -22,6 +22,8 @@ struct Rules {
     double most_seconds = 20.0;                         ///< for one run
     std::uint64_t most_bytes = std::uint64_t{8} << 30;  ///< of all peers together; above it they live one at a time
     unsigned threads = 2;
+    /// After a first round, peers whose shortest run is so many times that of the fastest are run no more; 0: all are.
+    double hopeless = 0.0;
 };
 
 struct Result {
@@ -29,6 +31,7 @@ struct Result {
     std::vector<double> ms;  ///< of all counted runs
     std::uint64_t pairs = 0, mark = 0, peak_bytes = 0;
     std::string note;    ///< why there are no times or no more of them
+    std::string chosen;  ///< the algorithm of the last run, where the peer has a choice
     bool right = false;  ///< the same pairs as clinch, compared by number and by a sum over them
 
     /// 0 without any.

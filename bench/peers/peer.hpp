@@ -24,6 +24,8 @@ public:
     /// be kept from call to call, as a program would that steps. Calls have the same number of boxes, but other ones.
     /// The lists are valid until the next call. Throws what the library throws.
     virtual Lists run(View<const Aabb> boxes) = 0;
+    /// The algorithm that the last call chose; empty for a peer that has no choice.
+    virtual std::string chosen() const { return {}; }
 
 protected:
     Peer() = default;

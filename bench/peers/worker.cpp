@@ -76,9 +76,10 @@ std::uint64_t peak_bytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-void set_text(Answer& answer, const std::string& text) {
-    answer.text.fill('\0');
-    std::copy_n(text.begin(), std::min(text.size(), answer.text.size() - 1), answer.text.begin());
+template <std::size_t N>
+void set_text(std::array<char, N>& to, const std::string& text) {
+    to.fill('\0');
+    std::copy_n(text.begin(), std::min(text.size(), N - 1), to.begin());
 }
 
 /// The child's side of a worker.
@@ -132,7 +133,8 @@ private:
         lists_ = peer_->run(scenes_[scene]);
         return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     }
-    static Answer done(Answer answer) {
+    Answer done(Answer answer) const {
+        set_text(answer.chosen, peer_->chosen());
         answer.peak_bytes = peak_bytes();
         answer.done = true;
         return answer;
@@ -170,7 +172,7 @@ void Worker::serve(const PeerRow& row, const Scenes& scenes, const Setup& setup,
                      : command.job == 'w' ? runner->warm_up(command.pairs)
                                           : runner->more(command.enough_ms);
         } catch (const std::exception& error) {
-            set_text(answer, error.what());
+            set_text(answer.text, error.what());
         }
         if (!write_all(answers, &answer, sizeof answer)) break;
     }
@@ -224,7 +226,7 @@ std::string Worker::end_of_child() {
 Answer Worker::ask(const Command& command, double most_seconds) {
     Answer answer;
     if (child_ <= 0) {
-        set_text(answer, "has ended");
+        set_text(answer.text, "has ended");
         return answer;
     }
     pollfd ready{answers_, POLLIN, 0};
@@ -235,10 +237,10 @@ Answer Worker::ask(const Command& command, double most_seconds) {
     if (seen == 0) {
         kill(child_, SIGKILL);
         end_of_child();
-        set_text(answer, "over the time limit");
+        set_text(answer.text, "over the time limit");
     } else if (!read_all(answers_, &answer, sizeof answer)) {
         answer = {};
-        set_text(answer, end_of_child());
+        set_text(answer.text, end_of_child());
     }
     return answer;
 }

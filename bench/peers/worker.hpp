@@ -21,8 +21,9 @@ struct Answer {
     std::uint64_t pairs = 0;             ///< of the first scene, at the first job
     std::uint64_t mark =
         0;  ///< of both scenes, at the first job: a sum over the pairs that does not depend on their order
-    std::uint64_t peak_bytes = 0;  ///< of the process
-    std::array<char, 240> text{};  ///< why not done
+    std::uint64_t peak_bytes = 0;   ///< of the process
+    std::array<char, 240> text{};   ///< why not done
+    std::array<char, 24> chosen{};  ///< the algorithm of the last run, where the peer has a choice
 };
 
 /// Two scenes that take turns, so that nothing found out in one run is of use in the next; the first is the one

@@ -1,60 +1,97 @@
-// The incremental path: pairs of fattened boxes are kept, and a step looks again only at what changed.
+// The incremental path: between steps in which little changes, only what changed is looked at again.
 //
-// Kept are: a grid over the fattened boxes (entries in columns, see grid.cl), whose spare entries take the bodies that have
-// left their fattened box since it was made; the pairs of fattened boxes at that time (first column a, second column b,
-// ascending), each with a state, 1 if the boxes themselves overlap; and for each body where its pairs are. A body that
-// stays within its fattened box has its pairs tested again. One that leaves it gets a new fattened box in a spare entry, its
-// kept pairs are dead from then on, and its new ones are looked for in the grid: they join the extra pairs, a short
-// list. The result is the kept and the extra pairs whose boxes overlap, merged.
-// Source: fattened boxes as in the dynamic tree of Box2D [Catto 2019, "Dynamic Bounding Volume Hierarchies"]; states kept
-// beside the pairs are ours.
+// Kept are: the sorted list of the pairs that overlap (kept_list.cl); a grid over the boxes as they were when it was made
+// (entries in columns, see grid.cl); and the movers. A body becomes a mover when its box first changes: its entry in the
+// grid is wiped out, and it gets a fattened box that holds its own and, for the direction it moves in, some more. All
+// boxes that overlap the fattened box are looked for once; with each the mover forms a live pair. As long as the mover
+// stays within its fattened box its live pairs are all that can overlap. When it leaves it, its live pairs die and
+// it is looked for afresh. So a step tests the live pairs, before and after the step: those that differ are what joins and
+// leaves the list.
+// Movers stand in a hash table of cells, each cell a chain of nodes: their min corner says which, and the size of a cell is
+// twice what a query must look back from it, so that it looks into few cells. Movers too large for that share one chain.
+// A mover that leaves gets a new node; old ones are passed over, and when nodes run out all are chained afresh.
+// Source: fattened boxes that reach ahead as in the dynamic tree of Box2D [Catto 2019, "Dynamic Bounding Volume
+// Hierarchies"]; cells in a hash table [Teschner et al. 2003, "Optimized Spatial Hashing for Collision Detection of
+// Deformable Objects"].
 //
-//   inc_fatten     boxes -> fattened boxes (rows)
-//   inc_places     order of entries -> place[body]
-//   inc_split      pairs -> columns a and b, numbers 0, 1, ...
-//   inc_first_rows sorted numbers of bodies -> first[body]: where its run begins
-//   inc_states     kept pairs, boxes -> states
-//   inc_apply      changed bodies and their boxes -> boxes; marks[i]: 1 has left its fattened box, 2 is no box
-//   inc_move       bodies that have left: new fattened box in its entry, kept pairs dead
-//   inc_query, inc_query_spare   bodies that have left -> pairs of fattened boxes, into a pair sink: with those in the grid,
-//                  with those that have left before or now
-//   inc_retest     changed bodies -> states of their kept pairs
-//   inc_extra      extra pairs -> states
-//   inc_count      states -> pairs that each block of kept pairs, with the extra pairs among them, puts out
-//   inc_fill       the same, with offsets (the scan of counts) -> pairs
-// Defines: LANES, FILTERS; BLOCK (1024): kept pairs of a block, a multiple of LANES; SLICE (1024): spare entries of a task
+//   inc_places      order of entries -> place[body]
+//   inc_apply       changed bodies and their boxes -> boxes of movers; marks[i]: 1 has left its fattened box or has none,
+//                   2 is no box
+//   inc_query_old   bodies that were no movers -> pairs that their entries had with others (each twice, and with itself)
+//   inc_move        bodies that left -> their movers, with new fattened boxes and nodes; entries wiped out
+//   inc_link        movers -> a node for each
+//   inc_query, inc_query_movers   bodies that left -> pairs of fattened boxes, into a pair sink: with entries of the grid,
+//                   with movers
+//   inc_test        live pairs -> states: 1 leaves the list, 2 joins it, 4 is dead and no pair any more
+//   inc_begin       new live pairs -> live pairs at their places, and states
+// place[body]: its entry if below n, else n + its mover; live pairs are of such numbers too, but have the body itself where
+// it is no mover.
+// Defines: LANES; FILTERS (0): 1 applies filters before a pair is stored; RUN (1): what a work-item of inc_apply and inc_test takes
 #include "common/lanes.clh"
 #include "common/box.clh"
-#include "common/search.clh"
 #include "broad_phase/pair_sink.clh"
 #include "broad_phase/grid_cells.clh"
-#ifndef BLOCK
-#define BLOCK 1024
+
+#ifndef RUN
+#define RUN 1
 #endif
-#ifndef SLICE
-#define SLICE 1024
+#if (defined(__SSE__) || defined(__aarch64__)) && CLINCH_HAS(__builtin_prefetch)
+#define ask_for(p) __builtin_prefetch(p)
+#else
+#define ask_for(p)
 #endif
 
-// `box` grown on all sides by `share` of its longest side, never beyond what a float can say; NaN if it is no box. The grown
-// box holds the box: subtracting what is not negative never rounds up.
-inline void fatten(global const float* box, float share, GridBox* fat) {
-    bool valid = is_box(box);
-    float grow = fmax(fmax(box[3] - box[0], box[4] - box[1]), box[5] - box[2]) * share;
-    for (uint d = 0; d < 3; ++d) {
-        fat->min[d] = valid ? fmax(box[d] - grow, -MAXFLOAT) : NAN;
-        fat->max[d] = valid ? fmin(box[d + 3] + grow, MAXFLOAT) : NAN;
-    }
+#define NONE 0xffffffffu
+#define NO_NODE 0u
+#define FIRST 1u    // bits of what is told of a body that left: it was no mover,
+#define FRESH 2u    // its filters changed,
+#define NO_ROW NONE  // its row among the new boxes, if it has one
+
+// As in src/broad_phase/incremental.hpp. Boxes: min x y z, max x y z; all NaN for what is no box. A cache line: what
+// tests of pairs read.
+typedef struct {
+    float now[6], old[6];       // old: before the last step in which the box changed
+    uint changed, left, fresh;  // the last step in which it did, in which it got a fattened box, that knew nothing of it
+    uint body;
+} Mover;
+
+typedef struct {
+    float box[6];
+    uint node, body;
+} Fat;
+
+// As in src/broad_phase/incremental.cpp: the cells of movers.
+typedef struct {
+    float origin[3];
+    float scale;   // cells a unit of length
+    float widest;  // of a mover that is in a cell
+    float reach;   // a little more: what to look back from a min corner
+    uint mask;     // number of chains of cells, a power of two, less 1; the chain behind them is that of large movers
+} Cells;
+
+inline void no_box(global float* box) {
+    for (uint d = 0; d < 6; ++d) box[d] = NAN;
+}
+inline void copy_box(global float* to, global const float* from) {
+    for (uint d = 0; d < 6; ++d) to[d] = from[d];
+}
+inline void copy_checked(global float* to, global const float* from) {
+    if (is_box(from))
+        copy_box(to, from);
+    else
+        no_box(to);
+}
+inline bool same_bits(global const float* p, global const float* q, ulong stride) {
+    bool same = true;
+    for (uint d = 0; d < 6; ++d) same = same & (as_uint(p[d]) == as_uint(q[d * stride]));
+    return same;
 }
 
-kernel void inc_fatten(global const float* restrict boxes, ulong first, uint n, float share, global float* restrict fat_boxes) {
-    uint i = get_global_id(0);
-    if (i >= n) return;
-    GridBox fat;
-    fatten(boxes + (first + i) * 6, share, &fat);
-    for (uint d = 0; d < 3; ++d) {
-        fat_boxes[(ulong)i * 6 + d] = fat.min[d];
-        fat_boxes[(ulong)i * 6 + d + 3] = fat.max[d];
-    }
+// Touching boxes overlap; what is no box overlaps none.
+inline bool overlap(global const float* p, global const float* q) {
+    bool all = true;
+    for (uint d = 0; d < 3; ++d) all = all & (p[d] <= q[d + 3]) & (q[d] <= p[d + 3]);
+    return all;
 }
 
 kernel void inc_places(global const uint* restrict order, uint n, global uint* restrict place) {
@@ -62,254 +99,313 @@ kernel void inc_places(global const uint* restrict order, uint n, global uint* r
     if (entry < n) place[order[entry]] = entry;
 }
 
-kernel void inc_split(global const uint* restrict pairs, uint count, global uint* restrict a, global uint* restrict b,
-                      global uint* restrict keys) {
-    uint k = get_global_id(0);
-    if (k >= count) return;
-    a[k] = pairs[2 * (ulong)k];
-    b[k] = pairs[2 * (ulong)k + 1];
-    keys[k] = pairs[2 * (ulong)k + 1];
+// The new box of body number i of those that changed: its row, or where the boxes have them already its place there.
+inline global const float* new_box(global const float* rows, uint in_place, global const float* boxes, ulong first, uint i, uint body) {
+    return in_place ? boxes + (first + body) * 6 : rows + (ulong)i * 6;
 }
 
-// One work-item 256 bodies.
-kernel void inc_first_rows(global const uint* restrict sorted, uint count, uint n, global uint* restrict first) {
-    uint body = get_global_id(0) * 256;
-    first_of_each(sorted, count, body, min(body + 256, n + 1), first);
-}
-
-// Touching boxes overlap. Kept and extra pairs are of bodies that have boxes.
-inline bool overlap(global const float* boxes, ulong first, uint a, uint b) {
-    global const float* p = boxes + (first + a) * 6;
-    global const float* q = boxes + (first + b) * 6;
-    bool all = true;
-    for (uint d = 0; d < 3; ++d) all = all & (p[d] <= q[d + 3]) & (q[d] <= p[d + 3]);
-    return all;
-}
-
-kernel void inc_states(global const float* restrict boxes, ulong first, global const uint* restrict a, global const uint* restrict b,
-                       uint count, global uchar* restrict states) {
-    uint k = get_global_id(0);
-    if (k < count) states[k] = overlap(boxes, first, a[k], b[k]) ? 1 : 0;
-}
-
-// `rows` holds the new boxes of `changed` bodies; with `in_place` the boxes have them already.
-kernel void inc_apply(global const uint* restrict changed, uint count, global const float* restrict rows, uint in_place,
-                      global float* restrict boxes, ulong first, global const float* restrict columns, ulong stride,
-                      global const uint* restrict place, global uint* restrict marks) {
-    uint i = get_global_id(0);
-    if (i >= count) return;
-    uint body = changed[i], entry = place[body];
-    global float* box = boxes + (first + body) * 6;
-    if (in_place == 0)
-        for (uint d = 0; d < 6; ++d) box[d] = rows[(ulong)i * 6 + d];
+// Brings one body up to date; returns its mark.
+inline uint apply(uint at, global const float* box, global const float* columns, ulong stride, uint n, global Mover* movers,
+                  global const Fat* fats, uint frame) {
+    uint mark = is_box(box) ? 0 : 2;
+    if (at < n) return mark | (same_bits(box, columns + at, stride) ? 0 : 1);
+    global Mover* m = movers + (at - n);
+    copy_box(m->old, m->now);
+    copy_checked(m->now, box);
+    m->changed = frame;
+    global const float* fat = fats[at - n].box;
     bool inside = true;
-    for (uint d = 0; d < 3; ++d)
-        inside = inside & (columns[d * stride + entry] <= box[d]) & (columns[(d + 3) * stride + entry] >= box[d + 3]);
-    bool valid = is_box(box);
-    marks[i] = (valid && inside ? 0 : 1) | (valid ? 0 : 2);
+    for (uint d = 0; d < 3; ++d) inside = inside & (fat[d] <= m->now[d]) & (fat[d + 3] >= m->now[d + 3]);
+    return mark | (inside ? 0 : 1);
 }
 
-// leavers: (body, its new entry) of those that have left; entries from `spare` on are spare ones.
-// Their new boxes go into columns too, up to leaver_stride of them, with NaN at the end.
-kernel void inc_move(global const uint2* restrict leavers, uint count, uint leaver_stride, global float* restrict leaver_columns,
-                     global uint* restrict leaver_ids, global const float* restrict boxes, ulong first, float share,
-                     uint spare, uint frame, global float* restrict columns, ulong stride, global uint* restrict order,
-                     global uint* restrict place, global uint* restrict left, global const uint* restrict first_of_a,
-                     global const uint* restrict first_of_b, global const uint* restrict by_b, global uchar* restrict states) {
-    uint i = get_global_id(0);
-    if (i >= count) {
-        for (uint d = 0; d < 6 && i < leaver_stride; ++d) leaver_columns[d * leaver_stride + i] = NAN;
-        if (i < leaver_stride) leaver_ids[i] = 0;
-        return;
+// A work-item takes RUN bodies.
+kernel void inc_apply(global const uint* restrict changed, uint count, global const float* restrict rows, uint in_place,
+                      global const float* restrict boxes, ulong first, global const float* restrict columns, ulong stride, uint n,
+                      global const uint* restrict place, global Mover* restrict movers, global const Fat* restrict fats, uint frame,
+                      global uint* restrict marks) {
+    uint from = get_global_id(0) * RUN;
+    if (from >= count) return;
+    uint to = min(count, from + RUN);
+#if RUN > 1
+    for (uint i = from; i < to; ++i) {
+        ask_for(place + changed[i]);
+        if (in_place) ask_for(boxes + (first + changed[i]) * 6);
     }
-    uint body = leavers[i].x, entry = leavers[i].y, old = place[body];
-    if (old < spare) {
-        for (uint d = 0; d < 6; ++d) columns[d * stride + old] = NAN;
-        for (uint k = first_of_a[body]; k < first_of_a[body + 1]; ++k) states[k] = 0;
-        for (uint k = first_of_b[body]; k < first_of_b[body + 1]; ++k) states[by_b[k]] = 0;
+    for (uint i = from; i < to; ++i) {
+        uint at = place[changed[i]];
+        if (at < n) continue;
+        ask_for(movers + (at - n));
+        ask_for(fats + (at - n));
     }
-    GridBox fat;
-    fatten(boxes + (first + body) * 6, share, &fat);
-    for (uint d = 0; d < 3; ++d) {
-        columns[d * stride + entry] = fat.min[d];
-        columns[(d + 3) * stride + entry] = fat.max[d];
-        leaver_columns[d * leaver_stride + i] = fat.min[d];
-        leaver_columns[(d + 3) * leaver_stride + i] = fat.max[d];
-    }
-    leaver_ids[i] = body;
-    order[entry] = body;
-    place[body] = entry;
-    left[body] = frame;
+#endif
+    for (uint i = from; i < to; ++i)
+        marks[i] = apply(place[changed[i]], new_box(rows, in_place, boxes, first, i, changed[i]), columns, stride, n, movers, fats, frame);
 }
 
-// One task: one body that has left, against the entries that stay.
-kernel void inc_query(global const uint2* restrict leavers, global const float* restrict columns, ulong stride,
-                      global const uint* restrict order, global const uint* restrict start, constant GridFrame* g, SINK_PARAMS) {
+inline void find_entries(const Entries* e, global const uint* start, constant GridFrame* g, const GridBox* b, uint body, PairSink* sink) {
+    walk_cells(e, start, g, b, body, 0, 1, sink);
+    test_entries(e, b, body, start[g->cells], start[g->cells + 1], sink);  // large ones
+}
+
+// Tasks: bodies that leave, here those with FIRST; before inc_move.
+kernel void inc_query_old(global const uint4* restrict leavers, global const uint* restrict place, global const float* restrict columns,
+                          ulong stride, global const uint* restrict order, global const uint* restrict start, constant GridFrame* g,
+                          SINK_PARAMS) {
     PairSink sink = sink_begin(SINK_ARGS);
     Entries e;
     e.columns = columns;
     e.stride = stride;
     e.order = order;
     for (uint task = sink_task(&sink); task < sink.task_end; task = sink_task(&sink)) {
+        if ((leavers[task].w & FIRST) == 0) continue;
         uint body = leavers[task].x;
-        GridBox b = box_at(columns, stride, leavers[task].y);
-        if (!(b.min[0] <= b.max[0])) continue;  // no box any more
-        walk_cells(&e, start, g, &b, body, 0, 1, &sink);
-        test_entries(&e, &b, body, start[g->cells], start[g->cells + 1], &sink);
+        uint entry = place[body];
+        if (entry >= start[g->cells + 1]) continue;  // was no box
+        GridBox b = box_at(columns, stride, entry);
+        find_entries(&e, start, g, &b, body, &sink);
     }
     sink_end(&sink);
 }
 
-// LANES bodies that have left, from number i on, against spare entries [from, to). Of two bodies that left in this frame the
-// greater finds the other.
-inline void test_spare(global const float* leaver_columns, uint leaver_stride, global const uint* leaver_ids, uint i,
-                       global const float* columns, ulong stride, global const uint* order, global const uint* left, uint frame,
-                       uint from, uint to, PairSink* sink) {
-    global const float* q = leaver_columns + i;
-    const floatN min_x = load_lanes(0, q), min_y = load_lanes(0, q + leaver_stride), min_z = load_lanes(0, q + 2 * leaver_stride);
-    const floatN max_x = load_lanes(0, q + 3 * leaver_stride), max_y = load_lanes(0, q + 4 * leaver_stride),
-                 max_z = load_lanes(0, q + 5 * leaver_stride);
-    sink->counts.tests += (ulong)(to - from) * LANES;
-    for (uint j = from; j < to; ++j) {
-        global const float* p = columns + j;
-        uint bits = lane_bits(as_mask((p[0] <= max_x) & (p[stride] <= max_y) & (p[2 * stride] <= max_z) & (p[3 * stride] >= min_x) &
-                                      (p[4 * stride] >= min_y) & (p[5 * stride] >= min_z)));
-        if (bits == 0) continue;
-        uint other = order[j];
-        if (left[other] == frame) bits &= lane_bits(as_mask(load_lanes(0, leaver_ids + i) > other));
-        sink_put_lanes(sink, leaver_ids + i, bits, other);
+// The box grown on all sides by `share` of its longest side, and by `ahead` steps like the last one in that direction, at
+// most by `most` of the longest side; never beyond what a float can say. NaN if it is no box. The grown box holds the box:
+// adding what is not negative, or subtracting it, never rounds to the other side.
+inline void fatten(global const Mover* m, float share, float ahead, float most, global float* fat) {
+    global const float* box = m->now;
+    float longest = fmax(fmax(box[3] - box[0], box[4] - box[1]), box[5] - box[2]);
+    for (uint d = 0; d < 3; ++d) {
+        float low = (m->old[d] - box[d]) * ahead, high = (box[d + 3] - m->old[d + 3]) * ahead;  // NaN counts for nothing
+        low = longest * share + fmin(fmax(low, 0.0f), longest * most);
+        high = longest * share + fmin(fmax(high, 0.0f), longest * most);
+        bool valid = box[d] <= box[d + 3];
+        fat[d] = valid ? fmax(box[d] - low, -MAXFLOAT) : NAN;
+        fat[d + 3] = valid ? fmin(box[d + 3] + high, MAXFLOAT) : NAN;
     }
 }
 
-// Tasks: for each LANES bodies that have left, slices of SLICE spare entries.
-kernel void inc_query_spare(global const float* restrict leaver_columns, uint leaver_stride, global const uint* restrict leaver_ids,
-                            global const float* restrict columns, ulong stride, global const uint* restrict order,
-                            global const uint* restrict left, uint frame, uint spare, uint spare_end, uint slices, SINK_PARAMS) {
-    PairSink sink = sink_begin(SINK_ARGS);
-    for (uint task = sink_task(&sink); task < sink.task_end; task = sink_task(&sink)) {
-        uint group = task / slices, from = spare + (task - group * slices) * SLICE;
-        test_spare(leaver_columns, leaver_stride, leaver_ids, group * LANES, columns, stride, order, left, frame, from,
-                   min(spare_end, from + SLICE), &sink);
-    }
-    sink_end(&sink);
+// Grows with the coordinate.
+inline int cell_on(float x, uint d, constant Cells* c) {
+    return (int)fmin(fmax(floor((x - c->origin[d]) * c->scale), -1.0e9f), 1.0e9f);
+}
+inline uint chain_of(int x, int y, int z, constant Cells* c) {
+    uint h = (uint)x * 73856093u ^ (uint)y * 19349663u ^ (uint)z * 83492791u;
+    return (h ^ h >> 15) & c->mask;
+}
+inline bool is_large(global const float* fat, constant Cells* c) {
+    return !(fmax(fmax(fat[3] - fat[0], fat[4] - fat[1]), fat[5] - fat[2]) <= c->widest);
 }
 
-// A kept pair lives while neither of its bodies has left.
-inline void retest(global const float* boxes, ulong first, uint spare, global const uint* place, global const uint* a,
-                   global const uint* b, uint k, global uchar* states) {
-    if (place[a[k]] < spare && place[b[k]] < spare) states[k] = overlap(boxes, first, a[k], b[k]) ? 1 : 0;
+// nodes: (mover, next node of the chain), from number 1 on. What is no box stands in no chain.
+inline void link(global Fat* f, uint mover, uint node, constant Cells* c, volatile global uint* heads, global uint2* nodes) {
+    global const float* fat = f->box;
+    f->node = NO_NODE;
+    if (!(fat[0] <= fat[3])) return;
+    uint chain = is_large(fat, c) ? c->mask + 1 : chain_of(cell_on(fat[0], 0, c), cell_on(fat[1], 1, c), cell_on(fat[2], 2, c), c);
+    f->node = node;
+    nodes[node].x = mover;
+    nodes[node].y = atomic_xchg(heads + chain, node);
 }
 
-kernel void inc_retest(global const uint* restrict changed, uint count, global const float* restrict boxes, ulong first, uint spare,
-                       global const uint* restrict place, global const uint* restrict a, global const uint* restrict b,
-                       global const uint* restrict first_of_a, global const uint* restrict first_of_b,
-                       global const uint* restrict by_b, global uchar* restrict states) {
+kernel void inc_link(global Fat* restrict fats, uint count, constant Cells* c, volatile global uint* restrict heads,
+                     global uint2* restrict nodes) {
+    uint i = get_global_id(0);
+    if (i < count) link(fats + i, i, i + 1, c, heads, nodes);
+}
+
+// leavers: (body, mover, its number among those that changed or NO_ROW, bits). Their nodes are those from first_node on.
+kernel void inc_move(global const uint4* restrict leavers, uint count, global const float* restrict rows, uint in_place,
+                     global const float* restrict boxes, ulong first, float share, float ahead, float most, uint n, uint frame,
+                     global float* restrict columns, ulong stride, global uint* restrict place, global Mover* restrict movers,
+                     global Fat* restrict fats, constant Cells* c, uint first_node, volatile global uint* restrict heads, global uint2* restrict nodes) {
     uint i = get_global_id(0);
     if (i >= count) return;
-    uint body = changed[i];
-    if (place[body] >= spare) return;
-    for (uint k = first_of_a[body]; k < first_of_a[body + 1]; ++k) retest(boxes, first, spare, place, a, b, k, states);
-    for (uint k = first_of_b[body]; k < first_of_b[body + 1]; ++k) retest(boxes, first, spare, place, a, b, by_b[k], states);
-}
-
-kernel void inc_extra(global const uint* restrict extra, uint count, global const float* restrict boxes, ulong first,
-                      global uint* restrict states) {
-    uint k = get_global_id(0);
-    if (k < count) states[k] = overlap(boxes, first, extra[2 * (ulong)k], extra[2 * (ulong)k + 1]) ? 1 : 0;
-}
-
-inline bool before(uint a, uint b, uint c, uint d) { return a < c || (a == c && b < d); }
-
-// First extra pair that is not before (a, b).
-inline uint first_extra(global const uint* extra, uint count, uint a, uint b) {
-    uint low = 0, high = count;
-    while (low < high) {
-        uint middle = low + (high - low) / 2;
-        if (before(extra[2 * (ulong)middle], extra[2 * (ulong)middle + 1], a, b))
-            low = middle + 1;
+    uint body = leavers[i].x, mover = leavers[i].y, row = leavers[i].z, bits = leavers[i].w;
+    global Mover* m = movers + mover;
+    if (bits & FIRST) {
+        uint entry = place[body];
+        for (uint d = 0; d < 6; ++d) m->now[d] = columns[d * stride + entry];
+        copy_checked(m->old, m->now);
+        if (row == NO_ROW)
+            copy_box(m->now, m->old);
         else
-            high = middle;
+            copy_checked(m->now, new_box(rows, in_place, boxes, first, row, body));
+        columns[entry] = NAN;
+        place[body] = n + mover;
+        m->body = body;
+        fats[mover].body = body;
+        // Bodies that begin to move together shall not all leave together ever after.
+        ahead *= 0.5f + (float)(body * 2654435769u >> 8) * 0x1p-25f;
+        m->changed = frame;
     }
-    return low;
+    fatten(m, share, ahead, most, fats[mover].box);
+    m->left = frame;
+    m->fresh = bits != 0 ? frame : 0;
+    link(fats + mover, mover, first_node + i, c, heads, nodes);
 }
 
-#if LANES == 1
-inline uint state_bits(global const uchar* states) { return states[0] != 0 ? 1 : 0; }
-#else
-inline uint state_bits(global const uchar* states) {
-    intN s = CLINCH_JOIN(convert_int, LANES)(load_lanes(0, states));
-    return lane_bits(as_mask(s != 0));
-}
-#endif
-
-// Kept pairs of block number `block`, and the extra pairs that come before its end and not before its start.
-inline void block_of(uint block, uint blocks, uint kept, uint extra_count, global const uint* a, global const uint* b,
-                     global const uint* extra, uint* range) {
-    range[0] = block * BLOCK;
-    range[1] = min(kept, range[0] + BLOCK);
-    range[2] = block == 0 ? 0 : first_extra(extra, extra_count, a[range[0]], b[range[0]]);
-    range[3] = block + 1 == blocks ? extra_count : first_extra(extra, extra_count, a[range[1]], b[range[1]]);
-}
-
-kernel void inc_count(global const uint* restrict a, global const uint* restrict b, global const uchar* restrict states, uint kept,
-                      global const uint* restrict extra, global const uint* restrict extra_states, uint extra_count, uint blocks,
-                      global uint* restrict counts) {
-    uint block = get_global_id(0);
-    if (block >= blocks) return;
-    uint range[4];
-    block_of(block, blocks, kept, extra_count, a, b, extra, range);
-    uint count = 0;
-    for (uint k = range[0]; k < range[1]; k += LANES) count += popcount(state_bits(states + k));
-    for (uint e = range[2]; e < range[3]; ++e) count += extra_states[e];
-    counts[block] = count;
-}
-
-// Kept pairs from k on, before `end` and before the pair (x, y): those with a state to `at` on, which moves on; whole vectors
-// are written where there is room up to `room`. Gives the first pair that is not before (x, y).
-inline uint put_kept(global const uint* a, global const uint* b, global const uchar* states, uint k, uint end, uint x, uint y,
-                     uint* at, uint room, global uint* pairs) {
-    uint to = *at;
-    while (k < end) {
-        uintN va = load_lanes(0, a + k), vb = load_lanes(0, b + k);
-        uint earlier = lane_bits(as_mask((va < x) | ((va == x) & (vb < y))));
-        if (end - k < LANES) earlier &= (1u << (end - k)) - 1;
-        uint bits = state_bits(states + k) & earlier, count = popcount(earlier);
-#if COMPRESS
-        if (to + LANES <= room) {
-            uintN low = compress_lanes(va, bits), high = compress_lanes(vb, bits);
-            store_lanes(interleave_low(low, high), 0, pairs + 2 * (ulong)to);
-            store_lanes(interleave_high(low, high), 1, pairs + 2 * (ulong)to);
-            to += popcount(bits);
-            bits = 0;
+// Tasks: bodies that left.
+kernel void inc_query(global const uint4* restrict leavers, global const Fat* restrict fats, global const float* restrict columns,
+                      ulong stride, global const uint* restrict order, global const uint* restrict start, constant GridFrame* g,
+                      SINK_PARAMS) {
+    PairSink sink = sink_begin(SINK_ARGS);
+    Entries e;
+    e.columns = columns;
+    e.stride = stride;
+    e.order = order;
+    for (uint task = sink_task(&sink); task < sink.task_end; task = sink_task(&sink)) {
+        global const Fat* f = fats + leavers[task].y;
+        if (!(f->box[0] <= f->box[3])) continue;  // no box any more
+        GridBox b;
+        for (uint d = 0; d < 3; ++d) {
+            b.min[d] = f->box[d];
+            b.max[d] = f->box[d + 3];
         }
-#endif
-        for (; bits != 0; bits &= bits - 1, ++to) {
-            uint from = k + lowest_bit(bits);
-            pairs[2 * (ulong)to] = a[from];
-            pairs[2 * (ulong)to + 1] = b[from];
-        }
-        k += count;
-        if (count < LANES) break;
+        find_entries(&e, start, g, &b, f->body, &sink);
     }
-    *at = to;
-    return k;
+    sink_end(&sink);
 }
 
-kernel void inc_fill(global const uint* restrict a, global const uint* restrict b, global const uchar* restrict states, uint kept,
-                     global const uint* restrict extra, global const uint* restrict extra_states, uint extra_count, uint blocks,
-                     global const uint* restrict offsets, global const uint* restrict counts, global uint* restrict pairs) {
-    uint block = get_global_id(0);
-    if (block >= blocks) return;
-    uint range[4];
-    block_of(block, blocks, kept, extra_count, a, b, extra, range);
-    uint at = offsets[block], room = at + counts[block], k = range[0];
-    for (uint e = range[2]; e < range[3]; ++e) {
-        if (extra_states[e] == 0) continue;
-        uint x = extra[2 * (ulong)e], y = extra[2 * (ulong)e + 1];
-        k = put_kept(a, b, states, k, range[1], x, y, &at, room, pairs);
-        pairs[2 * (ulong)at] = x;
-        pairs[2 * (ulong)at + 1] = y;
-        ++at;
+typedef struct {
+    global const Fat* fats;
+    global const Mover* movers;
+    global const uint2* nodes;
+    uint frame;
+} Fats;
+
+// Of two bodies that left in this step the greater finds the other.
+inline void test_mover(global const Fat* f, uint number, const Fats* all, PairSink* sink) {
+    global const Fat* other = all->fats + number;
+    sink->counts.tests += 1;
+    if (!overlap(f->box, other->box)) return;
+    if (other->body >= f->body && all->movers[number].left == all->frame) return;
+    sink_put(sink, f->body, other->body);
+}
+
+inline void test_chain(global const Fat* f, uint node, const Fats* all, PairSink* sink) {
+    while (node != NO_NODE) {
+        uint2 here = all->nodes[node];
+        if (all->fats[here.x].node == node) test_mover(f, here.x, all, sink);
+        node = here.y;
     }
-    put_kept(a, b, states, k, range[1], 0xffffffffu, 0, &at, room, pairs);
+}
+
+// Movers of one cell: its chain may have those of others too.
+inline void test_cell(global const Fat* f, int x, int y, int z, constant Cells* c, global const uint* heads, const Fats* all,
+                      PairSink* sink) {
+    for (uint node = heads[chain_of(x, y, z, c)]; node != NO_NODE;) {
+        uint2 here = all->nodes[node];
+        global const Fat* other = all->fats + here.x;
+        if (other->node == node && cell_on(other->box[0], 0, c) == x && cell_on(other->box[1], 1, c) == y && cell_on(other->box[2], 2, c) == z)
+            test_mover(f, here.x, all, sink);
+        node = here.y;
+    }
+}
+
+kernel void inc_query_movers(global const uint4* restrict leavers, global const Mover* restrict movers,
+                             global const Fat* restrict fats, uint mover_count, constant Cells* c, global const uint* restrict heads, global const uint2* restrict nodes, uint frame,
+                             SINK_PARAMS) {
+    PairSink sink = sink_begin(SINK_ARGS);
+    Fats all;
+    all.fats = fats;
+    all.movers = movers;
+    all.nodes = nodes;
+    all.frame = frame;
+    for (uint task = sink_task(&sink); task < sink.task_end; task = sink_task(&sink)) {
+        global const Fat* f = fats + leavers[task].y;
+        if (!(f->box[0] <= f->box[3])) continue;
+        int low[3], high[3];
+        float cells = 1.0f;
+        for (uint d = 0; d < 3; ++d) {
+            low[d] = cell_on(f->box[d] - c->reach, d, c);
+            high[d] = cell_on(f->box[d + 3], d, c);
+            cells *= (float)high[d] - (float)low[d] + 1.0f;
+        }
+        if (cells > (float)mover_count) {  // a large one: all movers are fewer
+            for (uint i = 0; i < mover_count; ++i) test_mover(f, i, &all, &sink);
+            continue;
+        }
+        for (int z = low[2]; z <= high[2]; ++z)
+            for (int y = low[1]; y <= high[1]; ++y)
+                for (int x = low[0]; x <= high[0]; ++x) test_cell(f, x, y, z, c, heads, &all, &sink);
+        test_chain(f, heads[c->mask + 1], &all, &sink);
+    }
+    sink_end(&sink);
+}
+
+// One side of a live pair: its box before and after this step, and what happened to it.
+typedef struct {
+    global const float *old, *now;
+    uint left, fresh;
+} Side;
+
+inline void mover_side(global const Mover* m, uint frame, Side* s) {
+    s->now = m->now;
+    s->old = m->changed == frame ? m->old : m->now;
+    s->left = m->left == frame ? 1 : 0;
+    s->fresh = m->fresh == frame ? 1 : 0;
+}
+
+inline void side_of(uint number, uint n, global const float* boxes, ulong first, global const Mover* movers, uint frame, Side* s) {
+    if (number >= n) {
+        mover_side(movers + (number - n), frame, s);
+        return;
+    }
+    s->old = s->now = boxes + (first + number) * 6;
+    s->left = s->fresh = 0;
+}
+
+// A pair of which one side is fresh leaves and joins if it can: the host cancels what does both.
+inline uint difference(const Side* p, const Side* q) {
+    uint before = overlap(p->old, q->old) ? 1 : 0, after = overlap(p->now, q->now) ? 1 : 0, fresh = p->fresh | q->fresh;
+    return (before & ((after ^ 1) | fresh)) | (after & ((before ^ 1) | fresh)) << 1;
+}
+
+// State of a live pair; dead ones and empty places are emptied.
+inline uint test_live(global uint2* live, uint any_first, global const uint* place, uint n, global const float* boxes, ulong first,
+                      global const Mover* movers, uint frame) {
+    uint2 pair = *live;
+    if (pair.x == NONE) return 0;
+    if (any_first && pair.y < n && place[pair.y] >= n) pair.y = place[pair.y];
+    Side p, q;
+    mover_side(movers + (pair.x - n), frame, &p);
+    side_of(pair.y, n, boxes, first, movers, frame, &q);
+    uint state = difference(&p, &q);
+    if (p.left | q.left) {
+        state = (state & 1) | 4;
+        live->x = live->y = NONE;
+    }
+    return state;
+}
+
+// With `any_first`, bodies have become movers in this step. The first side of a live pair is a mover.
+// A work-item takes RUN pairs. Boxes lie all over memory: on a CPU all of a run are asked for at first.
+kernel void inc_test(global uint2* restrict live, uint count, uint any_first, global const uint* restrict place, uint n,
+                     global const float* restrict boxes, ulong first, global const Mover* restrict movers, uint frame,
+                     global uchar* restrict states) {
+    uint from = get_global_id(0) * RUN;
+    if (from >= count) return;
+    uint to = min(count, from + RUN);
+#if RUN > 1
+    for (uint k = from; k < to; ++k) {
+        uint2 pair = live[k];
+        if (pair.y < n) ask_for(boxes + (first + pair.y) * 6);
+        if (pair.x != NONE) ask_for(movers[pair.x - n].now);
+    }
+#endif
+    for (uint k = from; k < to; ++k) states[k] = test_live(live + k, any_first, place, n, boxes, first, movers, frame);
+}
+
+// begun: (place among the live pairs, the two sides)
+kernel void inc_begin(global const uint4* restrict begun, uint count, uint n, global const float* restrict boxes, ulong first,
+                      global const Mover* restrict movers, uint frame, global uint2* restrict live, global uchar* restrict states) {
+    uint i = get_global_id(0);
+    if (i >= count) return;
+    uint4 pair = begun[i];
+    Side p, q;
+    mover_side(movers + (pair.y - n), frame, &p);
+    side_of(pair.z, n, boxes, first, movers, frame, &q);
+    live[pair.x].x = pair.y;
+    live[pair.x].y = pair.z;
+    states[pair.x] = difference(&p, &q) & 2;
 }

@@ -33,7 +33,8 @@ struct BroadPhaseOptions {
     /// four times as much. At least what one row of boxes needs is taken.
     std::size_t scratch_bytes = std::size_t{64} << 20;
     /// Tell at each list of find() and update() which pairs are new in it and which are gone: added() and removed().
-    /// Costs a pass over the list and a copy of it. With Order::Any it is InvalidArgument.
+    /// Costs a pass over the list and a copy of it, or next to nothing where update() knows what changed. With
+    /// Order::Any it is InvalidArgument.
     bool events = false;
     /// Room for the pairs that stream() hands over at a time, on the device and on the host.
     std::size_t stream_bytes = std::size_t{64} << 20;
@@ -73,10 +74,11 @@ public:
 
     /// As find(), for boxes of which only some changed since the last call of find() or update(): `changed` are their
     /// numbers, in any order, and may name boxes that did not change; a box whose group, mask or motion changed
-    /// is to be among them. When they are few among many boxes (with "auto" or "grid"), pairs are kept from call to
-    /// call and only those of changed boxes are tested again, only boxes that left a slightly larger box are looked for
-    /// again; the first such call costs about three times a find(). When they are many, or the number of boxes
-    /// is another one, or nothing was found yet, this is find(). When there are none, it is the last result. The result
+    /// is to be among them. When they are few among many boxes (with "auto" or "grid"), the list is kept from call to
+    /// call, only pairs of boxes that have changed are tested again, and only boxes that left a slightly larger box are
+    /// looked for again; the first such call costs about twice a find(). When they are many (more than a sixteenth; in
+    /// several calls together more than an eighth makes one of them a first one again), or the number of boxes is
+    /// another one, or nothing was found yet, this is find(). When there are none, it is the last result. The result
     /// is that of find(), with Order::Sorted. A number that is no box is InvalidArgument.
     View<const Pair> update(View<const Aabb> boxes, View<const std::uint32_t> changed,
                             const FilterColumns& filters = {});

@@ -47,8 +47,10 @@ View<const AlgorithmRow> registry();
 /// The row of `name`; an unknown name is InvalidArgument that lists the known ones.
 const AlgorithmRow& algorithm_named(const std::string& name);
 /// The choice of "auto" for `count` boxes, among which the last call found `last_pairs`; `device` is the one to work
-/// on, null for the host alone.
-const AlgorithmRow& choose_algorithm(std::uint64_t count, std::uint64_t last_pairs, const DeviceInfo* device);
+/// on, null for the host alone; `boxes` are they if they are in host memory, else empty. Looks at 64 of them at most:
+/// some microseconds.
+const AlgorithmRow& choose_algorithm(std::uint64_t count, std::uint64_t last_pairs, const DeviceInfo* device,
+                                     View<const Aabb> boxes = {});
 /// Whether the algorithm gives right results on the device.
 bool runs_on(const AlgorithmRow& row, const DeviceInfo& device);
 

@@ -47,6 +47,12 @@ void check_count(std::uint64_t count) {
                     "there are " + std::to_string(count) + " boxes; at most 4294967295 are accepted");
 }
 
+// The boxes that the choice may look at: none where bodies that cannot move are named, which `bvh` keeps from call to
+// call and no look at the boxes shows.
+View<const Aabb> seen(View<const Aabb> boxes, const FilterColumns& filters) {
+    return filters.motion == nullptr ? boxes : View<const Aabb>();
+}
+
 }  // namespace
 
 void detail::check_options(const Context::Impl& context, const BroadPhaseOptions& options) {
@@ -63,11 +69,11 @@ BroadPhase::Impl::Impl(Context& c, BroadPhaseOptions o) : context(c.impl()), opt
     detail::check_options(context, options);
 }
 
-const detail::AlgorithmRow& BroadPhase::Impl::choose(std::uint64_t count) const {
+const detail::AlgorithmRow& BroadPhase::Impl::choose(std::uint64_t count, View<const Aabb> boxes) const {
     if (options.algorithm != "auto") return detail::algorithm_named(options.algorithm);
     const std::uint64_t last_pairs = count == report.bodies ? report.pairs : 0;
     return detail::choose_algorithm(count, last_pairs,
-                                    context.infos.empty() ? nullptr : &context.infos[context.primary()]);
+                                    context.infos.empty() ? nullptr : &context.infos[context.primary()], boxes);
 }
 
 detail::Device& BroadPhase::Impl::device() const {
@@ -96,13 +102,18 @@ bool BroadPhase::Impl::measured(const char* algorithm, detail::BoxInput& boxes, 
     report.skipped.pairs_filtered = counts.pairs_filtered;
     report.skipped.static_pairs = counts.static_pairs;
     any_invalid = counts.invalid_boxes;
+    note_memory();
+    report.ms.total = total.ms();
+    return true;
+}
+
+void BroadPhase::Impl::note_memory() {
+    report.peak_device_bytes = 0;
     for (const auto& opened : context.devices)
         if (opened != nullptr) report.peak_device_bytes += opened->report().peak_bytes;
     most_host_bytes = std::max<std::uint64_t>(
         most_host_bytes, pairs.host_bytes() + events.host_bytes() + (incremental ? incremental->host_bytes() : 0));
     report.peak_host_bytes = most_host_bytes;
-    report.ms.total = total.ms();
-    return true;
 }
 
 View<const Pair> BroadPhase::Impl::find(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
@@ -122,7 +133,7 @@ void BroadPhase::Impl::listed(std::uint64_t count) {
 void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
                            bool list_rejected) {
     listed_boxes = 0;
-    if (incremental) incremental->forget();
+    leave_steps();
     report = Report{};
     if (row.needs_device && !detail::runs_on(row, context.infos[context.primary()]))
         throw Error(ErrorCode::DeviceFailed, std::string("the algorithm '") + row.name + "' cannot run on '" +
@@ -141,42 +152,73 @@ void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& bo
 }
 
 bool BroadPhase::Impl::steps_pay(const detail::AlgorithmRow& row, std::uint64_t count, std::uint64_t changed) const {
-    constexpr std::uint64_t fewest_boxes = 10000, boxes_a_change = 8;
+    constexpr std::uint64_t fewest_boxes = 10000;
     return count >= fewest_boxes && count != steps_refused &&
-           report.pairs <= detail::Incremental::most_pairs_a_body * count && changed <= count / boxes_a_change &&
-           row.needs_device && (options.algorithm == "auto" || options.algorithm == "grid") &&
+           report.pairs <= detail::Incremental::most_pairs_a_body * count &&
+           changed <= count / detail::Incremental::bodies_a_change && row.needs_device &&
+           (options.algorithm == "auto" || options.algorithm == "grid") &&
            detail::runs_on(detail::algorithm_named("grid"), context.infos[context.primary()]);
 }
 
 bool BroadPhase::Impl::step(detail::BoxInput& boxes, const detail::Changes& changes,
                             const detail::FilterInput& filters) {
-    if (!incremental || !incremental->valid()) return false;
+    if (!incremental) return false;
     pairs.clear();
     listed_boxes = 0;
     report = Report{};
-    if (!measured("incremental", boxes, [&](detail::FindCounts& counts) {
-            return incremental->update(boxes, changes, filters, pairs, counts);
-        }))
-        return false;
+    try {
+        if (!measured("incremental", boxes, [&](detail::FindCounts& counts) {
+                return incremental->update(boxes, changes, filters, pairs, counts);
+            })) {
+            leave_steps();
+            return false;
+        }
+    } catch (...) {
+        leave_steps();
+        throw;
+    }
     report.skipped.unchanged = boxes.count() - std::min<std::uint64_t>(boxes.count(), changes.bodies.size());
-    listed(boxes.count());
+    listed_boxes = boxes.count();
+    if (options.events) events.change(incremental->added(), incremental->removed());
     return true;
 }
 
-bool BroadPhase::Impl::begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters) {
-    pairs.clear();
-    listed_boxes = 0;
-    report = Report{};
-    made.clear();  // their memory is needed now
-    if (!incremental) incremental = std::make_unique<detail::Incremental>(device(), options);
-    if (!measured("incremental", boxes,
-                  [&](detail::FindCounts& counts) { return incremental->build(boxes, filters, pairs, counts); })) {
-        incremental.reset();
-        steps_refused = boxes.count();
-        return false;
+// Gives back the memory of steps, which `pairs` does not map any more. The list before, which events begin from, may be
+// there alone.
+void BroadPhase::Impl::leave_steps() {
+    if (!incremental) return;
+    if (events.behind()) {
+        const detail::Mapping list = incremental->map_list();
+        events.hold({list.as<Pair>(), incremental->list_size()});
     }
-    listed(boxes.count());
-    return true;
+    incremental.reset();
+}
+
+void BroadPhase::Impl::begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters) {
+    const detail::Stopwatch watch;
+    const std::uint64_t count = listed_boxes;
+    listed_boxes = 0;
+    const std::vector<Pair> list(pairs.view().begin(), pairs.view().end());
+    pairs.clear();
+    made.clear();  // their memory is needed now
+    incremental = std::make_unique<detail::Incremental>(device(), options);
+    bool begun = false;
+    try {
+        begun = incremental->build(boxes, filters, list, options.order == Order::Sorted);
+    } catch (const Error& error) {
+        if (error.code() != ErrorCode::OutOfMemory) throw;
+    }
+    if (begun) {
+        pairs.adopt(incremental->map_list(), list.size());
+    } else {
+        incremental.reset();
+        steps_refused = count;
+        pairs.append(list);
+    }
+    listed_boxes = count;
+    note_memory();
+    report.ms.broad += watch.ms();
+    report.ms.total += watch.ms();
 }
 
 View<const Pair> BroadPhase::Impl::same_again() {
@@ -197,7 +239,7 @@ BroadPhase& BroadPhase::operator=(BroadPhase&& other) noexcept = default;
 View<const Pair> BroadPhase::find(View<const Aabb> boxes, const FilterColumns& filters) {
     check_count(boxes.size());
     detail::BoxInput input(boxes, impl_->staging);
-    return impl_->find(impl_->choose(boxes.size()), input, {filters, 0}, true);
+    return impl_->find(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
 }
 
 View<const Pair> BroadPhase::update(View<const Aabb> boxes, View<const std::uint32_t> changed,
@@ -210,24 +252,20 @@ View<const Pair> BroadPhase::update(View<const Aabb> boxes, View<const std::uint
                                                         std::to_string(boxes.size()) + " boxes");
     if (impl_->listed_boxes != boxes.size() || boxes.empty()) return find(boxes, filters);
     if (changed.empty()) return impl_->same_again();
-    if (!impl_->steps_pay(impl_->choose(boxes.size()), boxes.size(), changed.size())) {
-        impl_->pairs.clear();  // it may map memory of what ends here
-        impl_->incremental.reset();
-        return find(boxes, filters);
-    }
-    std::vector<Aabb> rows(changed.size());
-    for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = boxes[changed[i]];
-    bool done = false;
-    if (impl_->incremental && impl_->incremental->valid()) {
+    const detail::AlgorithmRow& row = impl_->choose(boxes.size());
+    if (!impl_->steps_pay(row, boxes.size(), changed.size())) return find(boxes, filters);
+    if (impl_->incremental) {
+        std::vector<Aabb> rows(changed.size());
+        for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = boxes[changed[i]];
         detail::BoxInput there(impl_->device(), impl_->staging.handle(), 0, static_cast<std::uint32_t>(boxes.size()));
-        done = impl_->step(there, {changed, rows.data(), false}, {filters, 0});
+        if (impl_->step(there, {changed, rows.data(), false}, {filters, 0})) {
+            if (impl_->any_invalid) impl_->report.rejected = rejected_boxes(boxes);
+            return impl_->pairs.view();
+        }
     }
-    if (!done) {
-        detail::BoxInput all(boxes, impl_->staging);
-        done = impl_->begin_steps(all, {filters, 0});
-    }
-    if (!done) return find(boxes, filters);
-    if (impl_->any_invalid) impl_->report.rejected = rejected_boxes(boxes);
+    detail::BoxInput all(boxes, impl_->staging);
+    impl_->find(row, all, {filters, 0}, true);
+    impl_->begin_steps(all, {filters, 0});
     return impl_->pairs.view();
 }
 
@@ -238,7 +276,7 @@ std::uint64_t BroadPhase::stream(View<const Aabb> boxes, const std::function<voi
     detail::BoxInput input(boxes, impl_->staging);
     impl_->pairs.clear();
     impl_->pairs.stream_to(take, impl_->options.stream_bytes / sizeof(Pair));
-    impl_->run(impl_->choose(boxes.size()), input, {filters, 0}, true);
+    impl_->run(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
     return impl_->report.pairs;
 }
 
@@ -247,7 +285,7 @@ std::uint64_t BroadPhase::count(View<const Aabb> boxes, const FilterColumns& fil
     detail::BoxInput input(boxes, impl_->staging);
     impl_->pairs.clear();
     impl_->pairs.count_only();
-    impl_->run(impl_->choose(boxes.size()), input, {filters, 0}, true);
+    impl_->run(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
     return impl_->report.pairs;
 }
 

@@ -33,8 +33,8 @@ struct BroadPhase::Impl {
     std::uint64_t listed_boxes = 0;   // boxes of the last call, if `pairs` is its list; else 0
 
     Impl(Context& c, BroadPhaseOptions o);
-    /// The algorithm for `count` boxes, given what the last report says.
-    const detail::AlgorithmRow& choose(std::uint64_t count) const;
+    /// The algorithm for `count` boxes, given what the last report says and, if they are in host memory, `boxes`.
+    const detail::AlgorithmRow& choose(std::uint64_t count, View<const Aabb> boxes = {}) const;
     /// The device that algorithms work on; opens it.
     detail::Device& device() const;
     /// Finds the pairs of `boxes` with `row`; boxes that are no boxes are listed if `list_rejected`.
@@ -45,8 +45,8 @@ struct BroadPhase::Impl {
     /// As find(), by what changed since the last call, boxes being in device memory. False: not done, and `boxes` may
     /// be as before the changes.
     bool step(detail::BoxInput& boxes, const detail::Changes& changes, const detail::FilterInput& filters);
-    /// Begins keeping pairs. False: it does not pay, and find() is to be called.
-    bool begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters);
+    /// Begins keeping pairs after find() of these boxes, if that pays. The list stays, elsewhere in memory.
+    void begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters);
     /// The last list once more, nothing having changed.
     View<const Pair> same_again();
     /// The same into `pairs` as it is set up.
@@ -55,6 +55,8 @@ struct BroadPhase::Impl {
 
 private:
     void listed(std::uint64_t count);
+    void leave_steps();
+    void note_memory();
     template <class Search>
     bool measured(const char* algorithm, detail::BoxInput& boxes, const Search& search);
 };

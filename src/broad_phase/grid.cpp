@@ -157,14 +157,16 @@ std::uint32_t Grid::entries_a_task() const {
 }
 
 // Sorts the boxes by cell and lays them out as columns.
-void Grid::bin(BoxInput& boxes, const GridFrame& frame) {
+void Grid::make_entries(BoxInput& boxes) {
+    const GridFrame& frame = host_frame_;
+    if (!sort_) sort_.emplace(device_);
     if (!keys_kernel_) {
         keys_kernel_ = device_.kernel("broad_phase/grid", "grid_keys");
         gather_kernel_ = device_.kernel("broad_phase/grid", "grid_gather");
         starts_kernel_ = device_.kernel("broad_phase/grid", "grid_starts");
     }
     const std::uint32_t n = boxes.count();
-    stride_ = std::uint64_t{n} + spare_ + padding;
+    stride_ = std::uint64_t{n} + padding;
     cells_ = frame.cells;
     device_.reserve(frame_, sizeof frame, "the frame of a grid");
     device_.write(frame_, &frame, sizeof frame);
@@ -173,7 +175,7 @@ void Grid::bin(BoxInput& boxes, const GridFrame& frame) {
     device_.reserve(columns_, stride_ * 6 * sizeof(float), "boxes as columns");
     device_.reserve(start_, (std::size_t{frame.cells} + 3) * sizeof(std::uint32_t), "the starts of cells");
     device_.launch_items(keys_kernel_.args(boxes.on(device_), boxes.first(), n, frame_, keys_), n);
-    sort_.sort(keys_, order_, n, bits_of(std::uint64_t{frame.cells} + 1), true);
+    sort_->sort(keys_, order_, n, bits_of(std::uint64_t{frame.cells} + 1), true);
     device_.launch_items(
         gather_kernel_.args(boxes.on(device_), boxes.first(), order_, n, static_cast<std::uint32_t>(stride_), columns_),
         stride_);
@@ -181,33 +183,44 @@ void Grid::bin(BoxInput& boxes, const GridFrame& frame) {
                          (std::size_t{frame.cells} + 3 + 255) / 256);
 }
 
-void Grid::find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, FindCounts& counts) {
+bool Grid::bin(BoxInput& boxes) {
     const std::uint32_t n = boxes.count();
     cells_ = 0;
-    if (n < 2) {
-        counts.invalid_boxes = n == 1;  // one box is looked at on the host
-        return;
-    }
+    any_invalid_ = n == 1;  // one box is looked at on the host
+    if (n < 2) return false;
     const BoxStatistics stats = statistics_.gather(boxes);
-    counts.invalid_boxes = stats.boxes < n;
-    if (stats.boxes < 2) return;
+    any_invalid_ = stats.boxes < n;
+    if (stats.boxes < 2) return false;
     const Choice choice = choose(stats, device_.info().lanes);
-    const GridFrame frame = make_frame(stats, choice);
-    bin(boxes, frame);
+    small_ = choice.small;
+    large_ = stats.boxes - choice.small;
+    host_frame_ = make_frame(stats, choice);
+    make_entries(boxes);
+    return true;
+}
 
+void Grid::keep_entries_only() {
+    sort_.reset();
+    keys_ = Buffer();
+}
+
+void Grid::find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, FindCounts& counts) {
+    const bool binned = bin(boxes);
+    counts.invalid_boxes = any_invalid_;
+    if (!binned) return;
     std::vector<SinkLaunch> launches;
     Kernel& small = search_kernel("grid_small", filters);
     small.args(columns_, stride_, order_, start_, frame_);
-    launches.push_back({&small, 5, (choice.small + entries_a_task() - 1) / entries_a_task()});
-    if (const std::uint32_t large_count = stats.boxes - choice.small; large_count > 0) {
+    launches.push_back({&small, 5, (small_ + entries_a_task() - 1) / entries_a_task()});
+    if (large_ > 0) {
         Kernel& large = search_kernel("grid_large", filters);
         large.args(columns_, stride_, order_, start_, frame_);
-        launches.push_back({&large, 5, large_count * parts});
+        launches.push_back({&large, 5, large_ * parts});
         Kernel& giants = search_kernel("grid_giants", filters);
-        giants.args(columns_, stride_, order_, start_, frame.cells);
-        launches.push_back({&giants, 5, large_count - 1});
+        giants.args(columns_, stride_, order_, start_, cells_);
+        launches.push_back({&giants, 5, large_ - 1});
     }
-    sink_.collect(launches, filters, n, pairs, counts);
+    sink_.collect(launches, filters, boxes.count(), pairs, counts);
 }
 
 std::unique_ptr<BroadPhaseAlgorithm> make_grid(Device* device, const BroadPhaseOptions& options) {

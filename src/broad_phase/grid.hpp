@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "src/broad_phase/algorithm.hpp"
@@ -42,33 +43,38 @@ struct GridBins {
 class Grid : public BroadPhaseAlgorithm {
 public:
     Grid(Device& device, const BroadPhaseOptions& options)
-        : device_(device), options_(options), statistics_(device), sort_(device), sink_(device, options) {}
+        : device_(device), options_(options), statistics_(device), sink_(device, options) {}
 
-    /// Leaves room for `entries` more entries behind those of the boxes.
-    void set_spare(std::uint32_t entries) { spare_ = entries; }
     void find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, FindCounts& counts) override;
-    /// Whether the last find() had boxes enough to look for pairs; only then has it entries.
-    bool binned() const noexcept { return cells_ != 0; }
-    /// Valid until the next find().
+    /// Makes the entries and looks for no pairs. False, without entries, when there are less than two boxes.
+    bool bin(BoxInput& boxes);
+    /// Whether there were boxes that are no boxes.
+    bool any_invalid() const noexcept { return any_invalid_; }
+    /// Gives back the device memory that only making the entries needed.
+    void keep_entries_only();
+    /// As of the last bin() or find(), and valid until the next.
     GridBins bins() const { return {columns_, order_, start_, frame_, stride_, cells_}; }
+    const GridFrame& frame() const noexcept { return host_frame_; }
     /// Entries behind the last that vector loads may touch.
     static constexpr std::uint32_t padding = 64;
 
 private:
-    void bin(BoxInput& boxes, const GridFrame& frame);
+    void make_entries(BoxInput& boxes);
     Kernel& search_kernel(const char* name, const FilterInput& filters);
     std::uint32_t entries_a_task() const;
 
     Device& device_;
     const BroadPhaseOptions& options_;
     StatisticsGatherer statistics_;
-    RadixSort sort_;
+    std::optional<RadixSort> sort_;
     PairSink sink_;
     Kernel keys_kernel_, gather_kernel_, starts_kernel_;
     std::map<std::string, Kernel> search_kernels_;
     Buffer frame_, keys_, order_, columns_, start_;
     std::uint64_t stride_ = 0;
-    std::uint32_t cells_ = 0, spare_ = 0;
+    GridFrame host_frame_{};
+    std::uint32_t cells_ = 0, small_ = 0, large_ = 0;  // cells, and boxes of the two kinds
+    bool any_invalid_ = false;
 };
 
 }  // namespace clinch::detail

@@ -4,12 +4,22 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "src/broad_phase/algorithm.hpp"
 #include "src/primitives/host_parallel.hpp"
+
+// Compiled for several processors; the program's start chooses. Not beneath a sanitizer, which is not up by then.
+#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define CLINCH_FOR_EACH_PROCESSOR __attribute__((target_clones("arch=skylake-avx512", "avx2", "default")))
+#else
+#define CLINCH_FOR_EACH_PROCESSOR
+#endif
 
 namespace clinch::detail {
 namespace {
@@ -18,6 +28,8 @@ constexpr std::size_t block = 16;               // boxes tested at once, in plai
 constexpr std::size_t rows_at_once = 256;       // boxes whose pairs make one list
 constexpr std::size_t lists_at_once = 256;      // between two calls of progress
 constexpr std::size_t shifts_a_box = 16;        // an insertion sort of more is slower than sorting anew
+constexpr std::size_t boxes_a_descent = 4;      // fewer for each descent: the order is lost
+constexpr std::size_t few_boxes = 128;          // sorted by comparing; more by the digits of their keys
 constexpr std::uint64_t pairs_kept = 1u << 20;  // memory for more is given back before the result takes its own
 // Up to so many tests, or pairs to sort, one thread is done before others have surely begun.
 constexpr std::uint64_t serial_tests = std::uint64_t{1} << 23, serial_pairs = std::uint64_t{1} << 20;
@@ -29,6 +41,42 @@ bool valid(const Aabb& box) {
     bool ok = true;
     for (int d = 0; d < 3; ++d) ok &= (box.min[d] <= box.max[d]) & (box.min[d] >= -most) & (box.max[d] <= most);
     return ok;
+}
+
+// Grows with x, which is no NaN.
+std::uint32_t ordered(float x) {
+    std::uint32_t bits = 0;
+    std::memcpy(&bits, &x, sizeof bits);
+    return bits ^ ((bits >> 31) != 0 ? 0xffffffffu : 0x80000000u);
+}
+
+// Of what is no box: behind all boxes.
+constexpr std::uint32_t last_key = 0xffffffffu;
+
+// A box on the sorted axis.
+struct Entry {
+    std::uint32_t key;  // of the min, or last_key
+    std::uint32_t id;
+};
+
+// Stable; radix sort from the lowest digit on [Knuth, The Art of Computer Programming 3, 5.2.5]. Uses `spare`.
+void sort_entries(std::vector<Entry>& entries, std::vector<Entry>& spare) {
+    if (entries.size() <= few_boxes) {
+        std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
+        return;
+    }
+    spare.resize(entries.size());
+    std::array<std::array<std::size_t, 256>, 4> place{};
+    for (const Entry& entry : entries)
+        for (std::size_t digit = 0; digit < 4; ++digit) ++place[digit][entry.key >> (8 * digit) & 255];
+    for (std::size_t digit = 0; digit < 4; ++digit) {
+        auto& places = place[digit];
+        if (places[entries[0].key >> (8 * digit) & 255] == entries.size()) continue;  // all alike
+        std::size_t at = 0;
+        for (std::size_t& count : places) at += std::exchange(count, at);
+        for (const Entry& entry : entries) spare[places[entry.key >> (8 * digit) & 255]++] = entry;
+        entries.swap(spare);
+    }
 }
 
 // The axis on which the centres vary most; of two alike the first.
@@ -56,6 +104,43 @@ struct Found {
     bool keeps = true;
 };
 
+// Place of the lowest bit that is set, of which there is one.
+inline std::uint32_t lowest_bit(std::uint32_t bits) {
+#if defined(__GNUC__)
+    return static_cast<std::uint32_t>(__builtin_ctz(bits));
+#else
+    std::uint32_t place = 0;
+    for (; (bits & 1u) == 0; bits >>= 1) ++place;
+    return place;
+#endif
+}
+
+// Pairs on their way to a list.
+class PairBuffer {
+public:
+    explicit PairBuffer(Found& found) : found_(found) {}
+
+    // The pairs of `a` with those of block ids whose bit is set.
+    void add(std::uint32_t a, const std::uint32_t* ids, std::uint32_t bits) {
+        if (count_ > most - block) flush();
+        for (; bits != 0; bits &= bits - 1) {
+            const std::uint32_t b = ids[lowest_bit(bits)];
+            pairs_[count_++] = {std::min(a, b), std::max(a, b)};
+        }
+    }
+    void flush() {
+        found_.passed += count_;
+        if (found_.keeps) found_.pairs.insert(found_.pairs.end(), pairs_, pairs_ + count_);
+        count_ = 0;
+    }
+
+private:
+    static constexpr std::size_t most = 512;
+    Found& found_;
+    std::size_t count_ = 0;
+    Pair pairs_[most];
+};
+
 // In the order of the axis: min and max on it, on the next one, and on the one after that.
 using Columns = std::array<std::vector<float>, 6>;
 
@@ -64,22 +149,25 @@ struct SideBounds {
     float min_u, max_u, min_v, max_v;
 };
 
-// Which of the boxes from `j` on begin before `end_s` and overlap `box` on the other axes; returns whether any
-// does. A plain loop without branches, which compilers turn into vector code.
-std::uint32_t test_block(const Columns& columns, std::size_t j, float end_s, const SideBounds& box,
-                         std::uint32_t (&hits)[block]) {
+// Which of the boxes from `j` on begin before `end_s` and overlap `box` on the other axes, as bits. A plain loop
+// without branches, which compilers turn into vector code.
+std::uint32_t test_block(const Columns& columns, std::size_t j, float end_s, const SideBounds& box) {
+    static constexpr std::uint32_t lane_bit[block]{1u << 0,  1u << 1,  1u << 2,  1u << 3, 1u << 4,  1u << 5,
+                                                   1u << 6,  1u << 7,  1u << 8,  1u << 9, 1u << 10, 1u << 11,
+                                                   1u << 12, 1u << 13, 1u << 14, 1u << 15};
     const float *const min_s = columns[0].data() + j, *const min_u = columns[2].data() + j,
                        *const max_u = columns[3].data() + j, *const min_v = columns[4].data() + j,
                        *const max_v = columns[5].data() + j;
     const SideBounds b = box;
-    std::uint32_t any = 0;
+    std::uint32_t hits = 0;
     for (std::size_t l = 0; l < block; ++l) {
-        hits[l] = static_cast<std::uint32_t>(min_s[l] <= end_s) & static_cast<std::uint32_t>(min_u[l] <= b.max_u) &
-                  static_cast<std::uint32_t>(max_u[l] >= b.min_u) & static_cast<std::uint32_t>(min_v[l] <= b.max_v) &
-                  static_cast<std::uint32_t>(max_v[l] >= b.min_v);
-        any |= hits[l];
+        const std::uint32_t hit =
+            static_cast<std::uint32_t>(min_s[l] <= end_s) & static_cast<std::uint32_t>(min_u[l] <= b.max_u) &
+            static_cast<std::uint32_t>(max_u[l] >= b.min_u) & static_cast<std::uint32_t>(min_v[l] <= b.max_v) &
+            static_cast<std::uint32_t>(max_v[l] >= b.min_v);
+        hits |= lane_bit[l] & (0u - hit);
     }
-    return any;
+    return hits;
 }
 
 class HostSweep : public BroadPhaseAlgorithm {
@@ -89,12 +177,8 @@ public:
     void find(BoxInput& input, const FilterInput& filters, PairList& pairs, FindCounts& counts) override;
 
 private:
-    struct Entry {
-        float key;  // min on the axis; infinite for what is no box, which so stands behind all boxes
-        std::uint32_t id;
-    };
-
-    void sort_anew(View<const Aabb> boxes);
+    void number(View<const Aabb> boxes);
+    std::size_t look_up_keys(View<const Aabb> boxes);
     bool repair();
     void line_up(View<const Aabb> boxes);
     void fill_columns(View<const Aabb> boxes);
@@ -104,23 +188,35 @@ private:
     std::vector<Pair> joined_by_rows(std::uint64_t total) const;
 
     const BroadPhaseOptions& options_;
-    std::vector<Entry> order_;
+    std::vector<Entry> order_, spare_;
     std::size_t axis_ = 0;
     std::size_t boxes_ = 0;  // entries that are boxes: the first ones
     Columns columns_;
+    std::vector<std::uint32_t> ids_;    // of the columns
     std::uint64_t tests_at_first_ = 0;  // of the call that chose the axis
     std::uint64_t tests_ = 0;           // of the last call
     bool choose_axis_ = true;
     std::vector<Found> found_;
 };
 
-void HostSweep::sort_anew(View<const Aabb> boxes) {
-    if (choose_axis_) axis_ = axis_of_variance(boxes);
+// Forgets the order there was.
+void HostSweep::number(View<const Aabb> boxes) {
+    axis_ = axis_of_variance(boxes);
     order_.resize(boxes.size());
-    for (std::size_t i = 0; i < order_.size(); ++i)
-        order_[i] = {valid(boxes[i]) ? boxes[i].min[axis_] : std::numeric_limits<float>::infinity(),
-                     static_cast<std::uint32_t>(i)};
-    std::sort(order_.begin(), order_.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
+    for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = {0, static_cast<std::uint32_t>(i)};
+}
+
+// Returns how many entries stand behind one with a larger key.
+std::size_t HostSweep::look_up_keys(View<const Aabb> boxes) {
+    std::uint32_t last = 0;
+    std::size_t descents = 0;
+    for (Entry& entry : order_) {
+        const Aabb& box = boxes[entry.id];
+        entry.key = valid(box) ? ordered(box.min[axis_]) : last_key;
+        descents += entry.key < last ? 1u : 0u;
+        last = entry.key;
+    }
+    return descents;
 }
 
 // Insertion sort; gives up, with the entries all there in some order, when it takes too long.
@@ -139,29 +235,23 @@ bool HostSweep::repair() {
 
 // Brings the boxes in order.
 void HostSweep::line_up(View<const Aabb> boxes) {
-    bool sorted = false;
-    if (order_.size() == boxes.size() && !choose_axis_) {
-        for (Entry& entry : order_) {
-            const Aabb& box = boxes[entry.id];
-            entry.key = valid(box) ? box.min[axis_] : std::numeric_limits<float>::infinity();
-        }
-        sorted = repair();
-    } else {
-        choose_axis_ = true;
-    }
-    if (!sorted) sort_anew(boxes);
-    const auto first_none = std::partition_point(order_.begin(), order_.end(), [](const Entry& entry) {
-        return entry.key < std::numeric_limits<float>::infinity();
-    });
+    if (order_.size() != boxes.size()) choose_axis_ = true;
+    if (choose_axis_) number(boxes);
+    const std::size_t descents = look_up_keys(boxes);
+    if (descents > order_.size() / boxes_a_descent || !repair()) sort_entries(order_, spare_);
+    const auto first_none =
+        std::partition_point(order_.begin(), order_.end(), [](const Entry& entry) { return entry.key != last_key; });
     boxes_ = static_cast<std::size_t>(first_none - order_.begin());
 }
 
 void HostSweep::fill_columns(View<const Aabb> boxes) {
     const std::size_t u = (axis_ + 1) % 3, v = (axis_ + 2) % 3;
     for (auto& column : columns_) column.resize(boxes_ + block);
+    ids_.resize(boxes_ + block);
     for (std::size_t i = 0; i < boxes_; ++i) {
         const Aabb& box = boxes[order_[i].id];
-        columns_[0][i] = order_[i].key;
+        ids_[i] = order_[i].id;
+        columns_[0][i] = box.min[axis_];
         columns_[1][i] = box.max[axis_];
         columns_[2][i] = box.min[u];
         columns_[3][i] = box.max[u];
@@ -185,19 +275,25 @@ void HostSweep::put(std::uint32_t a, std::uint32_t b, const FilterInput& filters
 }
 
 // Rows [first, end) of the order against those behind them that begin before they end.
+CLINCH_FOR_EACH_PROCESSOR
 void HostSweep::test_rows(std::size_t first, std::size_t end, const FilterInput& filters, Found& found) const {
+    const bool filtered = filters.any();
+    PairBuffer buffer(found);
     for (std::size_t i = first; i < end; ++i) {
         const float end_s = columns_[1][i];
         const SideBounds box{columns_[2][i], columns_[3][i], columns_[4][i], columns_[5][i]};
         std::size_t j = i + 1;
         for (; columns_[0][j] <= end_s; j += block) {
-            std::uint32_t hits[block];
-            if (test_block(columns_, j, end_s, box, hits) == 0) continue;
-            for (std::size_t l = 0; l < block; ++l)
-                if (hits[l] != 0) put(order_[i].id, order_[j + l].id, filters, found);
+            std::uint32_t hits = test_block(columns_, j, end_s, box);
+            if (!filtered) {
+                buffer.add(ids_[i], ids_.data() + j, hits);
+                continue;
+            }
+            for (; hits != 0; hits &= hits - 1) put(ids_[i], ids_[j + lowest_bit(hits)], filters, found);
         }
         found.tests += std::min(j, boxes_) - (i + 1);
     }
+    buffer.flush();
 }
 
 // All pairs in order: counted, scanned and filled by their first body, each such row sorted by itself.

@@ -13,6 +13,21 @@ class PairEvents {
 public:
     /// `now`, ascending, takes the place of the last list. Cost: one pass over both lists, and a copy if they differ.
     void update(View<const Pair> now);
+    /// The next list is the last one with `added` and without `removed`, both ascending. Costs their size; the last
+    /// list is then not known here any more, and hold() is to come before update().
+    void change(View<const Pair> added, View<const Pair> removed) {
+        added_.assign(added.begin(), added.end());
+        removed_.assign(removed.begin(), removed.end());
+        std::vector<Pair>().swap(last_);
+        behind_ = true;
+    }
+    /// Whether the last list is not known here.
+    bool behind() const noexcept { return behind_; }
+    /// Tells the last list. Cost: a copy of it.
+    void hold(View<const Pair> last) {
+        last_.assign(last.begin(), last.end());
+        behind_ = false;
+    }
     /// The list is the last one again.
     void same_again() noexcept {
         added_.clear();
@@ -21,6 +36,7 @@ public:
     /// As if no list had been seen: all of the next are added.
     void start_afresh() {
         last_.clear();
+        behind_ = false;
         same_again();
     }
     std::size_t host_bytes() const noexcept {
@@ -31,6 +47,7 @@ public:
 
 private:
     std::vector<Pair> last_, added_, removed_;
+    bool behind_ = false;
 };
 
 }  // namespace clinch::detail

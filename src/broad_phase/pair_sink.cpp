@@ -195,7 +195,8 @@ void PairSink::collect(const std::vector<SinkLaunch>& launches, const FilterInpu
         return;
     }
     if (!outcome.fits) {
-        plan(outcome.pairs + outcome.pairs / 64, all_workers, most);
+        // The room that the next call will ask for: fresh memory for many pairs takes longer than finding them.
+        plan(outcome.pairs + outcome.pairs / 8, all_workers, most);
         if (outcome.pairs + chunk_size_ * all_workers <= most) outcome = run(parts, filters, bodies);
     }
     if (!outcome.fits) {

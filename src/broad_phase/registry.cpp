@@ -1,5 +1,6 @@
-#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "clinch/error.hpp"
 #include "src/broad_phase/algorithm.hpp"
@@ -27,19 +28,76 @@ const AlgorithmRow rows[] = {
     {"sweep3", true, false, make_sweep3},
 };
 
-// The choice of "auto", first row that fits. Boxes, and pairs that the last call found a box (0 at the first): many
-// pairs tell of a crowd, where the host has too much to test. Where keeping pairs from call to call pays, and it was
-// told what changed, BroadPhase takes the incremental path before it comes here.
-struct Preference {
-    std::uint64_t boxes_up_to, pairs_a_box_up_to;
+// The choice of "auto": what an algorithm takes in nanoseconds, on two cores of a CPU with AVX-512; the cheapest is
+// taken. Tests are those of a sweep along one axis, pairs those that the last call found (0 at the first). Where
+// keeping pairs from call to call pays, and it was told what changed, BroadPhase takes the incremental path before it
+// comes here.
+struct Price {
     const char* algorithm;
+    double call, box, sweep_test, pair;
+    std::uint64_t most_boxes;  // beyond them it is not asked
 };
-constexpr std::uint64_t any = UINT64_MAX;
-constexpr Preference preferences[] = {
-    {250, any, "host-sweep"},  // done before a device has started
-    {2500, 50, "host-sweep"},
-    {any, any, "bvh"},
+constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t most_boxes_swept = 32768;
+constexpr Price prices[] = {
+    {"host-sweep", 0.0, 18.0, 0.25, 20.0, most_boxes_swept},
+    {"bvh", 250000.0, 45.0, 0.0, 3.0, any},
 };
+constexpr std::uint64_t boxes_before_device = 250;  // done before a device has started
+// Up to so many boxes their tests are taken to be of the usual number without a look at them. Without boxes on the host
+// to look at, those of more are taken to be too many.
+constexpr std::uint64_t boxes_taken_as_usual = 1500, boxes_taken_as_usual_unseen = 2500;
+
+constexpr std::size_t sample_size = 64;
+using Sample = std::vector<Aabb>;
+
+// Boxes taken at random, those that are none left out; always the same ones.
+Sample sample_of(View<const Aabb> boxes) {
+    Sample sample;
+    sample.reserve(sample_size);
+    std::uint32_t random = 1;
+    for (std::size_t k = 0; k < sample_size; ++k) {
+        random = random * 1664525u + 1013904223u;  // [Knuth, The Art of Computer Programming 2, 3.3.4]
+        const Aabb& box = boxes[static_cast<std::size_t>(std::uint64_t{random} * boxes.size() >> 32)];
+        bool valid = true;
+        for (int d = 0; d < 3; ++d) valid = valid && std::isfinite(box.min[d]) && std::isfinite(box.max[d]);
+        if (valid) sample.push_back(box);
+    }
+    return sample;
+}
+
+// The axis on which centres vary most, as host-sweep chooses it.
+int axis_of_variance(const Sample& sample) {
+    int axis = 0;
+    double most = -1.0;
+    for (int d = 0; d < 3; ++d) {
+        double mean = 0.0, variance = 0.0;
+        const auto centre = [d](const Aabb& b) {
+            return 0.5 * static_cast<double>(b.min[d]) + 0.5 * static_cast<double>(b.max[d]);
+        };
+        for (const Aabb& box : sample) mean += centre(box) / static_cast<double>(sample.size());
+        for (const Aabb& box : sample) variance += (centre(box) - mean) * (centre(box) - mean);
+        if (variance > most) most = variance, axis = d;
+    }
+    return axis;
+}
+
+// How many tests a sweep takes, by a sample, whose pairs are counted that overlap on the axis.
+double sweep_tests(View<const Aabb> boxes) {
+    const Sample sample = sample_of(boxes);
+    if (sample.size() < 2) return 0.0;
+    const int axis = axis_of_variance(sample);
+    std::uint32_t overlaps = 0;
+    for (std::size_t i = 0; i < sample.size(); ++i)
+        for (std::size_t j = i + 1; j < sample.size(); ++j)
+            if (sample[i].min[axis] <= sample[j].max[axis] && sample[j].min[axis] <= sample[i].max[axis]) ++overlaps;
+    const double n = static_cast<double>(boxes.size()), s = static_cast<double>(sample.size());
+    return overlaps / (s * (s - 1.0)) * n * n;
+}
+
+double price_of(const Price& price, double boxes, double tests, double pairs) {
+    return price.call + price.box * boxes + price.sweep_test * tests + price.pair * pairs;
+}
 
 }  // namespace
 
@@ -60,12 +118,19 @@ bool runs_on(const AlgorithmRow& row, const DeviceInfo& device) {
     return !row.long_loops || most_loop_iterations(device) == std::numeric_limits<std::uint32_t>::max();
 }
 
-const AlgorithmRow& choose_algorithm(std::uint64_t count, std::uint64_t last_pairs, const DeviceInfo* device) {
-    if (device == nullptr) return algorithm_named("host-sweep");
-    for (const Preference& row : preferences)
-        if (count <= row.boxes_up_to && last_pairs / std::max<std::uint64_t>(count, 1) <= row.pairs_a_box_up_to)
-            return algorithm_named(row.algorithm);
-    return algorithm_named("brute");  // not reached: the last row fits all
+const AlgorithmRow& choose_algorithm(std::uint64_t count, std::uint64_t last_pairs, const DeviceInfo* device,
+                                     View<const Aabb> boxes) {
+    if (device == nullptr || count <= boxes_before_device) return algorithm_named("host-sweep");
+    const double n = static_cast<double>(count), pairs = static_cast<double>(last_pairs);
+    double tests = n * n / 16.0;
+    if (boxes.empty() ? count > boxes_taken_as_usual_unseen : count > boxes_taken_as_usual && count <= most_boxes_swept)
+        tests = boxes.empty() ? n * n : sweep_tests(boxes);
+    const Price* best = nullptr;
+    for (const Price& price : prices)
+        if (count <= price.most_boxes &&
+            (best == nullptr || price_of(price, n, tests, pairs) < price_of(*best, n, tests, pairs)))
+            best = &price;
+    return algorithm_named(best->algorithm);
 }
 
 void check_limit(std::uint64_t pairs, const BroadPhaseOptions& options) {

@@ -117,9 +117,12 @@ View<const Pair> StepResult::Impl::find_changed(const detail::AlgorithmRow& row,
     detail::BoxInput input(impl.device(), device_bounds->boxes().handle(), 0, static_cast<std::uint32_t>(rows));
     if (impl.listed_boxes == rows && stepped_rows == rows) {
         if (sent.empty() && !filters_changed) return impl.same_again();
-        if (impl.steps_pay(row, rows, sent.size()) &&
-            (impl.step(input, {sent, nullptr, filters_changed}, filters) || impl.begin_steps(input, filters)))
+        if (impl.steps_pay(row, rows, sent.size())) {
+            if (impl.step(input, {sent, nullptr, filters_changed}, filters)) return impl.pairs.view();
+            impl.find(row, input, filters, false);
+            impl.begin_steps(input, filters);
             return impl.pairs.view();
+        }
     }
     return impl.find(row, input, filters, false);
 }

@@ -67,6 +67,30 @@ TEST_CASE("host-sweep: frames of moving, jumping, coming and going boxes", "[hos
     }
 }
 
+TEST_CASE("host-sweep: frames of other boxes each time, of either sign, both zeros and any size", "[host]") {
+    const std::uint64_t seed = 84;
+    test::Random random(seed);
+    Context context = Context::host_only();
+    BroadPhase kept(context, sweep_options());
+    constexpr float most = std::numeric_limits<float>::max(), none = std::numeric_limits<float>::quiet_NaN();
+    for (const std::size_t count : {60u, 128u, 129u, 300u, 300u, 300u, 300u}) {
+        std::vector<Aabb> boxes(count);
+        for (Aabb& box : boxes)
+            for (int d = 0; d < 3; ++d) {
+                const auto at = static_cast<float>(random.between(-4.0, 4.0));
+                const std::uint64_t what = random.below(60);
+                box.min[d] = what == 0 ? -0.0f : what == 1 ? 0.0f : what == 2 ? -most : what == 3 ? none : at;
+                box.max[d] = what == 4 ? most : what < 2 ? 0.0f : at + (what == 5 ? 0.0f : 1.0f);
+            }
+        INFO("seed " << seed << ", " << count << " boxes");
+        const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+        CHECK(expected.size() > 20);
+        CHECK(found_by(kept, boxes) == expected);
+        const auto are_boxes = std::count_if(boxes.begin(), boxes.end(), test::is_box);
+        CHECK(kept.report().rejected.size() == count - static_cast<std::size_t>(are_boxes));
+    }
+}
+
 TEST_CASE("host-sweep: a scene that turns to another axis is soon swept along that one", "[host]") {
     std::vector<Aabb> along_x, along_y;
     for (int i = 0; i < 2000; ++i) {

@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "bench/scenes/boxes.hpp"
+#include "bench/scenes/motion.hpp"
 #include "clinch/broad_phase.hpp"
 #include "tests/device/devices.hpp"
 
@@ -18,7 +19,7 @@ TEST_CASE("device memory stays below 96 bytes a body and 24 a pair, 12 in any or
                     INFO(name << " " << kind << " device " << device);
                     const std::vector<Aabb> boxes = scenes::make_boxes(kind, n, 1);
                     ContextOptions of_device;
-                    of_device.devices.indices = {device};
+                    of_device.devices.indices.assign(1, device);
                     Context context(of_device);
                     BroadPhaseOptions options;
                     options.algorithm = name;
@@ -31,6 +32,34 @@ TEST_CASE("device memory stays below 96 bytes a body and 24 a pair, 12 in any or
                     CHECK(broad_phase.report().peak_device_bytes < most);
                 }
         }
+}
+
+TEST_CASE("device memory stays below that while pairs are kept", "[device]") {
+    constexpr std::size_t n = 40000, fixed = std::size_t{1} << 20;
+    for (std::uint32_t device = 0; device < list_devices().size(); ++device) {
+        if (!list_devices()[device].quirks.empty()) continue;
+        for (const char* const kind : {"density", "uniform", "mixed", "grid-touch"})
+            for (const Order order : {Order::Sorted, Order::Any}) {
+                scenes::SparseMotion motion(scenes::make_boxes(kind, n, 1), 0.01, 1);
+                ContextOptions of_device;
+                of_device.devices.indices.assign(1, device);
+                Context context(of_device);
+                BroadPhaseOptions options;
+                options.order = order;
+                BroadPhase broad_phase(context, options);
+                broad_phase.find(motion.boxes());
+                std::size_t pairs = 0;
+                for (int frame = 0; frame < 12; ++frame) {
+                    motion.step();
+                    pairs = broad_phase.update(motion.boxes(), motion.movers()).size();
+                }
+                INFO(kind << " device " << device << " pairs " << pairs);
+                CHECK(broad_phase.report().algorithm == "incremental");
+                const std::size_t most = motion.boxes().size() * 96 + pairs * (order == Order::Any ? 12 : 24) + fixed;
+                CHECK(broad_phase.report().peak_device_bytes > n * 24);
+                CHECK(broad_phase.report().peak_device_bytes < most);
+            }
+    }
 }
 
 TEST_CASE("host memory of lists is reported", "[host]") {

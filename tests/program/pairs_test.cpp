@@ -184,6 +184,7 @@ TEST_CASE("statistics of five bodies show that nothing was built for them", "[pr
     CHECK(stats["skipped"]["pairs_filtered"] == 0);
     CHECK(stats["skipped"]["static_pairs"] == 1);  // the cone in the plane
     CHECK(stats["skipped"]["pairs_cached"] == 0);
+    for (const char* const none : {"unchanged", "inside", "still"}) CHECK(stats["skipped"].at(none) == 0);
     CHECK(stats["skipped"]["kernels_not_built"] > 2);
     CHECK(stats["peak_bytes"]["host"] > 1000000);
     CHECK(stats["peak_bytes"]["device"] == 0);
@@ -251,4 +252,21 @@ TEST_CASE("a disk that fills up leaves the older output and no part of the new",
     CHECK_THAT(run.err, Contains("o.csv: cannot be written"));
     CHECK(content(folder / "o.csv") == "older\n");
     CHECK(folder.names() == before);
+}
+
+TEST_CASE("statistics tell how many bodies that cannot move were not looked at again", "[program]") {
+    const TempFolder folder;
+    constexpr int bodies = 6000, still = 2000;
+    std::string rows;
+    for (int i = 0; i < bodies; ++i)
+        rows += std::string(i == 0 ? "" : ",\n") + R"({"shape": {"type": "sphere", "radius": 0.6}, "position": [)" +
+                std::to_string(i) + R"(, 0, 0], "motion": ")" + (i < still ? "static" : "dynamic") + R"("})";
+    const std::string scene = folder.write("row.json", R"({"bodies": [)" + rows + "]}");
+    REQUIRE(run_program({"pairs", scene, "-o", folder / "o.npy", "--stats", folder / "s.json", "--algorithm", "bvh",
+                         "--devices", "0", "--repeat", "2"})
+                .status == 0);
+    const Json stats = Json::parse(content(folder / "s.json"));
+    CHECK(stats["algorithm"] == "bvh");
+    CHECK(stats["pairs"] == bodies - still);  // each moving one with the one before it
+    CHECK(stats["skipped"].at("still") == still);
 }
