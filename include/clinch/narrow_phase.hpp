@@ -17,9 +17,9 @@
 namespace clinch {
 
 struct NarrowPhaseOptions {
-    /// Speed against precision, 0 (fastest) to 1 (most exact). Below 0.25: float32 alone; an answer whose `error` reaches
-    /// across 0 is one the shapes may or may not touch by. From 0.25 on: float32, and float64 for every pair of which float32
-    /// cannot tell whether it touches. From 0.75 on: float64 for all.
+    /// Speed against precision, 0 (fastest) to 1 (most exact). Below 0.25: float32 alone; an answer whose `error`
+    /// reaches across 0 is one the shapes may or may not touch by. From 0.25 on: float32, and float64 for every pair of
+    /// which float32 cannot tell whether it touches. From 0.75 on: float64 for all.
     double precision = 0.5;
     /// Instead of `precision`: the error that answers may have, in the scene's unit of length. Pairs of which float32
     /// cannot promise it are done in float64; those that still miss it are counted in NarrowReport::tolerance_missed.
@@ -66,8 +66,9 @@ public:
     NarrowPhase& operator=(NarrowPhase&& other) noexcept;
 
     /// The contacts of those of `pairs` whose distance is at most the margins of the two bodies together, in the order
-    /// of `pairs`: ascending if those are. A pair of a body that is not there or rejected, of two planes, or with a mesh,
-    /// is InvalidArgument. Valid until the next call or the end of this object. Throws Error; then there is no result.
+    /// of `pairs`: ascending if those are. A pair of a body that is not there or rejected, of two planes, or with a
+    /// mesh, is InvalidArgument. Valid until the next call or the end of this object. Throws Error; then there is no
+    /// result.
     View<const Contact> find(const Scene& scene, View<const Pair> pairs);
 
     const NarrowReport& report() const noexcept;

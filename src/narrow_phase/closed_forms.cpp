@@ -18,9 +18,9 @@ namespace host {
 #include "cl/narrow_phase/sphere_sphere.clh"
 }  // namespace host
 
-#define CLINCH_HOST_ROUTINE(pair)                                                                          \
-    void host_##pair(const host::Side* a, const host::Side* b, host::v3 between, host::Touch* touch) {     \
-        host::touch_##pair(a, b, between, touch);                                                          \
+#define CLINCH_HOST_ROUTINE(pair)                                                                      \
+    void host_##pair(const host::Side* a, const host::Side* b, host::v3 between, host::Touch* touch) { \
+        host::touch_##pair(a, b, between, touch);                                                      \
     }
 CLINCH_HOST_ROUTINE(sphere_sphere)
 CLINCH_HOST_ROUTINE(sphere_box)

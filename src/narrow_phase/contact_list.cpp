@@ -13,7 +13,8 @@ constexpr std::uint32_t rows_worth_threads = 4096;
 // One contact out of columns.
 class Columns {
 public:
-    Columns(const std::uint32_t* words, std::uint64_t stride, bool rests) : words_(words), stride_(stride), rests_(rests) {}
+    Columns(const std::uint32_t* words, std::uint64_t stride, bool rests)
+        : words_(words), stride_(stride), rests_(rests) {}
 
     Contact at(std::size_t i) const {
         Contact c;
@@ -76,11 +77,10 @@ void ContactList::append(const std::vector<HostAnswer>& answers) {
 void ContactList::finish(const Scene& scene, bool margins) {
     const Scene::Impl& s = scene.impl();
     if (margins)
-        contacts_.erase(std::remove_if(contacts_.begin(), contacts_.end(),
-                                       [&](const Contact& c) {
-                                           return c.distance - c.error > s.margin[c.a] + s.margin[c.b];
-                                       }),
-                        contacts_.end());
+        contacts_.erase(
+            std::remove_if(contacts_.begin(), contacts_.end(),
+                           [&](const Contact& c) { return c.distance - c.error > s.margin[c.a] + s.margin[c.b]; }),
+            contacts_.end());
     const auto end = static_cast<std::ptrdiff_t>(contacts_.size());
 #pragma omp parallel for schedule(static) if (contacts_.size() >= rows_worth_threads)
     for (std::ptrdiff_t i = 0; i < end; ++i) {
@@ -93,8 +93,8 @@ void ContactList::finish(const Scene& scene, bool margins) {
 }
 
 std::uint64_t ContactList::count_above(double tolerance) const {
-    return static_cast<std::uint64_t>(std::count_if(contacts_.begin(), contacts_.end(),
-                                                    [&](const Contact& c) { return c.error > tolerance; }));
+    return static_cast<std::uint64_t>(
+        std::count_if(contacts_.begin(), contacts_.end(), [&](const Contact& c) { return c.error > tolerance; }));
 }
 
 }  // namespace clinch::detail

@@ -38,8 +38,13 @@ HostAnswer touch_pair(const Scene& scene, const NarrowShapes& shapes, const Pair
         touch.point = host::v_sub(host::v_along(touch.point, touch.distance, touch.normal), between);
         touch.normal = host::v_negative(touch.normal);
     }
-    HostAnswer answer{pair.a, pair.b, touch.distance, touch.error, {touch.normal.x, touch.normal.y, touch.normal.z},
-                      {touch.point.x, touch.point.y, touch.point.z}, false};
+    HostAnswer answer{pair.a,
+                      pair.b,
+                      touch.distance,
+                      touch.error,
+                      {touch.normal.x, touch.normal.y, touch.normal.z},
+                      {touch.point.x, touch.point.y, touch.point.z},
+                      false};
     // Turned round, so that what is not a number is kept.
     answer.hit = !(touch.distance - (s.margin[pair.a] + s.margin[pair.b]) > touch.error);
     return answer;

@@ -24,7 +24,8 @@ struct MatrixRow {
     HostTouch host;       ///< the same routine in float64 on the host
 };
 
-/// All cells, in the order of their buckets. A new pair of classes is one header in cl/narrow_phase/, one module and one row.
+/// All cells, in the order of their buckets. A new pair of classes is one header in cl/narrow_phase/, one module and
+/// one row.
 View<const MatrixRow> matrix();
 /// Bucket of the classes at 8 a + b, for both orders; `no_bucket` where there is none: two planes, or a mesh.
 constexpr std::uint8_t no_bucket = 31;

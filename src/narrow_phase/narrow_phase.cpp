@@ -125,8 +125,8 @@ void NarrowPhase::Impl::find_on_host(const Scene& scene, View<const Pair> pairs)
         ++report.buckets[static_cast<std::size_t>(row - matrix().data())].pairs;
     }
     for (std::size_t first = 0; first < pairs.size(); first += Slots::chunk_pairs)
-        contacts.append(touch_on_host(
-            scene, shapes, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)}));
+        contacts.append(
+            touch_on_host(scene, shapes, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)}));
     report.ms.routines = watch.ms();
 }
 
@@ -222,8 +222,8 @@ void NarrowPhase::Impl::run(std::size_t k, const BucketSlice& slice, unsigned bi
     const std::uint32_t items = (slice.count - 1) / per_item + 1;
     // What nobody reads may be any buffer.
     const Buffer& margins = on_device->has_margins() ? on_device->margins() : on_device->classes();
-    const float tolerance =
-        options.tolerance ? static_cast<float>(*options.tolerance) : std::numeric_limits<float>::infinity();
+    const float tolerance = options.tolerance ? static_cast<float>(std::min(*options.tolerance, 3e38))
+                                              : std::numeric_limits<float>::infinity();
     Kernel& touch = kernel(k, bits);
     touch.args(slots->pairs(), *slice.numbers, slice.listed ? 1u : 0u, slice.first, slice.count, per_item,
                on_device->bodies(bits), on_device->shapes(bits), on_device->vertices(bits), margins, slots->answers(),

@@ -16,20 +16,15 @@ namespace {
 constexpr std::size_t rows_worth_threads = 4096;
 constexpr std::size_t vertex_block = 16;
 
-// Row-major, body to world; each entry within 4 units of 2^-53.
+// Row-major, body to world; each entry rounded once where a long double is longer than a double, else within 4 units of
+// 2^-53.
 void turn_of(const Quat& rotation, double* m) {
-    const double length = std::sqrt(rotation.w * rotation.w + rotation.x * rotation.x + rotation.y * rotation.y +
-                                    rotation.z * rotation.z);
-    const double w = rotation.w / length, x = rotation.x / length, y = rotation.y / length, z = rotation.z / length;
-    m[0] = 1.0 - 2.0 * (y * y + z * z);
-    m[1] = 2.0 * (x * y - w * z);
-    m[2] = 2.0 * (x * z + w * y);
-    m[3] = 2.0 * (x * y + w * z);
-    m[4] = 1.0 - 2.0 * (x * x + z * z);
-    m[5] = 2.0 * (y * z - w * x);
-    m[6] = 2.0 * (x * z - w * y);
-    m[7] = 2.0 * (y * z + w * x);
-    m[8] = 1.0 - 2.0 * (x * x + y * y);
+    const long double a = rotation.w, b = rotation.x, c = rotation.y, d = rotation.z;
+    const long double s = 2.0L / (a * a + b * b + c * c + d * d);
+    const long double turn[9] = {1.0L - s * (c * c + d * d), s * (b * c - a * d),        s * (b * d + a * c),
+                                 s * (b * c + a * d),        1.0L - s * (b * b + d * d), s * (c * d - a * b),
+                                 s * (b * d - a * c),        s * (c * d + a * b),        1.0L - s * (b * b + c * c)};
+    for (std::size_t i = 0; i < 9; ++i) m[i] = static_cast<double>(turn[i]);
 }
 
 void round_frame(const BodyFrame64& from, BodyFrame32& to) {
@@ -59,8 +54,7 @@ struct FillShape {
     void operator()(const Cylinder& s) const { set(s.radius, s.half_height); }
     void operator()(const Cone& s) const { set(s.radius, s.half_height); }
     void operator()(const Plane& s) const {
-        const double length =
-            std::sqrt(s.normal.x * s.normal.x + s.normal.y * s.normal.y + s.normal.z * s.normal.z);
+        const double length = std::sqrt(s.normal.x * s.normal.x + s.normal.y * s.normal.y + s.normal.z * s.normal.z);
         set(s.offset / length);
         record.normal[0] = s.normal.x / length;
         record.normal[1] = s.normal.y / length;
@@ -115,7 +109,9 @@ template <class Frame>
 void NarrowScene::send_frames(const Scene& scene, Frames<Frame>& frames) {
     const std::size_t rows_there = scene.row_count(), bytes = std::max<std::size_t>(rows_there, 1) * sizeof(Frame);
     const bool grown = frames.buffer.handle() == nullptr || frames.buffer.bytes() < bytes;
-    if (grown) device_.reserve(frames.buffer, bytes + (frames.buffer.handle() == nullptr ? 0 : bytes / 2), "the frames of bodies");
+    if (grown)
+        device_.reserve(frames.buffer, bytes + (frames.buffer.handle() == nullptr ? 0 : bytes / 2),
+                        "the frames of bodies");
     const View<const std::uint32_t> rows = frames.tracker.changed(scene, grown);
     if (rows.empty()) return;
     frames.staging.resize(rows.size());
@@ -134,9 +130,9 @@ void NarrowScene::send_frames(const Scene& scene, Frames<Frame>& frames) {
         device_.write(rows_, rows.data(), rows.size() * sizeof(std::uint32_t));
         device_.write(records_, frames.staging.data(), rows.size() * sizeof(Frame));
         constexpr auto words = static_cast<std::uint32_t>(sizeof(Frame) / sizeof(std::uint32_t));
-        device_.launch_items(place_kernel_.args(records_, rows_, static_cast<std::uint32_t>(rows.size()), words,
-                                                frames.buffer),
-                             rows.size());
+        device_.launch_items(
+            place_kernel_.args(records_, rows_, static_cast<std::uint32_t>(rows.size()), words, frames.buffer),
+            rows.size());
     }
     frames.tracker.seen(scene);
 }
@@ -176,8 +172,7 @@ void NarrowScene::update(const Scene& scene, const NarrowShapes& shapes, unsigne
 void NarrowScene::update_classes(const Scene& scene, const NarrowShapes& shapes) {
     const Scene::Impl& s = scene.impl();
     const std::size_t rows_there = scene.row_count();
-    const View<const std::uint32_t> rows =
-        class_tracker_.changed(scene, host_classes_.size() != rows_there);
+    const View<const std::uint32_t> rows = class_tracker_.changed(scene, host_classes_.size() != rows_there);
     if (rows.empty()) return;
     host_classes_.resize(rows_there);
     for (const std::uint32_t row : rows)

@@ -33,8 +33,8 @@ static_assert(sizeof(NarrowShape32) == 40 && sizeof(NarrowShape64) == 64, "kerne
 /// A body that takes no part: class of a row that is not there or is rejected.
 constexpr std::uint8_t no_class = 255;
 
-/// The shapes of a scene: one record each, and the vertices of hulls as columns x, y, z, each `stride` (a multiple of 16)
-/// long from first_vertex on, with the last vertex repeated. In float64, and rounded once to float32.
+/// The shapes of a scene: one record each, and the vertices of hulls as columns x, y, z, each `stride` (a multiple of
+/// 16) long from first_vertex on, with the last vertex repeated. In float64, and rounded once to float32.
 class NarrowShapes {
 public:
     /// Brings the records up to date; true if anything changed. Cost: the changed hulls.

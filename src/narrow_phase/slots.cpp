@@ -12,7 +12,8 @@ namespace {
 
 constexpr const char* module = "narrow_phase/buckets";
 constexpr std::uint32_t most_buckets = 32;
-constexpr std::uint32_t slot_block = 16;  // buckets begin at a multiple: vectors of answers end in the bucket's own slots
+constexpr std::uint32_t slot_block =
+    16;  // buckets begin at a multiple: vectors of answers end in the bucket's own slots
 constexpr unsigned key_bits = 5;
 
 std::uint32_t in_blocks(std::uint32_t count) {
@@ -120,7 +121,8 @@ BucketSlice Slots::undecided(const BucketSlice& bucket) {
 
 void Slots::put(const BucketSlice& slice, const std::vector<HostAnswer>& answers) {
     std::vector<std::uint32_t> hits(slice.count);
-    for (std::size_t i = 0; i < hits.size(); ++i) hits[i] = answers[i].hit ? 5 : 4;  // HIT and FLOAT64 of driver.clh
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        hits[i] = (answers[i].hit ? 1U : 0U) | (with_rests_ ? 4U : 0U);  // HIT, FLOAT64
     device_.write(hits_, hits.data(), hits.size() * sizeof hits[0], slice.first_slot * sizeof hits[0]);
     std::vector<float> column(slice.count), rest(slice.count);
     const auto put = [&](std::size_t c, std::size_t r, auto value) {
@@ -131,11 +133,13 @@ void Slots::put(const BucketSlice& slice, const std::vector<HostAnswer>& answers
         }
         const std::size_t bytes = column.size() * sizeof(float);
         device_.write(answers_, column.data(), bytes, (c * stride_ + slice.first_slot) * sizeof(float));
-        if (r > 0) device_.write(answers_, rest.data(), bytes, (r * stride_ + slice.first_slot) * sizeof(float));
+        if (r > 0 && with_rests_)
+            device_.write(answers_, rest.data(), bytes, (r * stride_ + slice.first_slot) * sizeof(float));
     };
     put(0, 8, [](const HostAnswer& a) { return a.distance; });
-    put(1, 0, [](const HostAnswer& a) {  // as the driver widens it
-        return (a.error + 0x1p-46 * std::fabs(a.distance)) * 1.0000002 + 1e-37;
+    const double rounding = with_rests_ ? 0x1p-46 : 0x1p-23;
+    put(1, 0, [rounding](const HostAnswer& a) {  // widened as the driver does
+        return (a.error + rounding * std::fabs(a.distance)) * 1.0000002 + 1e-37;
     });
     for (std::size_t d = 0; d < 3; ++d) {
         put(2 + d, 9 + d, [d](const HostAnswer& a) { return a.normal[d]; });

@@ -34,8 +34,8 @@ struct BucketSlice {
     const Buffer* numbers = nullptr;
 };
 
-/// Groups a chunk of pairs by bucket and puts the answers back into their order. Its memory is a few bytes a pair and that of
-/// the answers; it is kept from chunk to chunk.
+/// Groups a chunk of pairs by bucket and puts the answers back into their order. Its memory is a few bytes a pair and
+/// that of the answers; it is kept from chunk to chunk.
 class Slots {
 public:
     explicit Slots(Device& device) : device_(device), sort_(device), scan_(device) {}
@@ -43,15 +43,15 @@ public:
     /// Most pairs a chunk may have.
     static constexpr std::size_t chunk_pairs = std::size_t{1} << 18;
 
-    /// Sends the pairs, counts them by bucket, sorts them by it if there are several, and numbers their slots. Waits. A pair
-    /// without a bucket is InvalidArgument. `with_rests`: answers may be float64.
+    /// Sends the pairs, counts them by bucket, sorts them by it if there are several, and numbers their slots. Waits. A
+    /// pair without a bucket is InvalidArgument. `with_rests`: answers may be float64.
     void group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_t bodies, bool with_rests);
     /// The pairs of bucket k; none of them: nothing is to be done.
     const BucketSlice& bucket(std::size_t k) const { return slices_[k]; }
     std::size_t bucket_count() const { return slices_.size(); }
 
-    /// Of the bucket, the pairs whose answers are undecided, as a slice with slots of its own, which take the place of the old
-    /// ones. Waits.
+    /// Of the bucket, the pairs whose answers are undecided, as a slice with slots of its own, which take the place of
+    /// the old ones. Waits.
     BucketSlice undecided(const BucketSlice& bucket);
     /// Stores answers of the host in the slots of a slice, one a pair.
     void put(const BucketSlice& slice, const std::vector<HostAnswer>& answers);

@@ -42,7 +42,8 @@ inline Shape random_shape(std::size_t kind, Random& random) {
         default: {
             Hull hull;
             for (std::uint64_t i = 0, n = 4 + random.below(40); i < n; ++i)
-                hull.points.push_back({random.between(-0.5, 0.5), random.between(-0.5, 0.5), random.between(-0.5, 0.5)});
+                hull.points.push_back(
+                    {random.between(-0.5, 0.5), random.between(-0.5, 0.5), random.between(-0.5, 0.5)});
             return hull;
         }
     }
