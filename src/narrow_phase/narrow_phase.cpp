@@ -52,7 +52,7 @@ struct NarrowPhase::Impl {
     NarrowShapes shapes;
     std::unique_ptr<NarrowScene> on_device;
     std::unique_ptr<Slots> slots;
-    std::array<std::array<Kernel, 4>, 32> kernels;  // of a bucket: 32 and 64 bits, without and with margins
+    std::array<std::array<Kernel, 2>, 32> kernels;  // of a bucket: in 32 and 64 bits
     ContactList contacts;
     NarrowReport report;
 
@@ -200,13 +200,11 @@ void NarrowPhase::Impl::do_bucket(const Scene& scene, View<const Pair> pairs, st
 }
 
 Kernel& NarrowPhase::Impl::kernel(std::size_t k, unsigned bits) {
-    const bool margins = on_device->has_margins();
-    Kernel& kernel = kernels[k][(bits == 64 ? 1U : 0U) + (margins ? 2U : 0U)];
+    Kernel& kernel = kernels[k][bits == 64 ? 1 : 0];
     if (kernel) return kernel;
     const MatrixRow& row = matrix()[k];
     std::string defines = std::string(row.defines) + " -DREAL_BITS=" + std::to_string(bits);
     if (!row.lanes) defines += " -DPAIR_LANES=1";
-    if (margins) defines += " -DMARGINS=1";
     if (context.infos[context.primary()].exact_division)
         defines += " -DEXACT_FP32=1 -cl-fp32-correctly-rounded-divide-sqrt";
     kernel = device().kernel(row.module, "touch_pairs", defines);
@@ -221,13 +219,14 @@ void NarrowPhase::Impl::run(std::size_t k, const BucketSlice& slice, unsigned bi
                                                   : (slice.count - 1) / most_items + 1;
     const std::uint32_t items = (slice.count - 1) / per_item + 1;
     // What nobody reads may be any buffer.
-    const Buffer& margins = on_device->has_margins() ? on_device->margins() : on_device->classes();
+    const bool with_margins = on_device->has_margins();
+    const Buffer& margins = with_margins ? on_device->margins() : on_device->classes();
     const float tolerance = options.tolerance ? static_cast<float>(std::min(*options.tolerance, 3e38))
                                               : std::numeric_limits<float>::infinity();
     Kernel& touch = kernel(k, bits);
     touch.args(slots->pairs(), *slice.numbers, slice.listed ? 1u : 0u, slice.first, slice.count, per_item,
-               on_device->bodies(bits), on_device->shapes(bits), on_device->vertices(bits), margins, slots->answers(),
-               slots->stride(), slice.first_slot, tolerance, slots->hits());
+               on_device->bodies(bits), on_device->shapes(bits), on_device->vertices(bits), margins,
+               with_margins ? 1u : 0u, slots->answers(), slots->stride(), slice.first_slot, tolerance, slots->hits());
     const std::size_t group = device().group_size();
     device().launch(touch, (items + group - 1) / group, group);
 }
