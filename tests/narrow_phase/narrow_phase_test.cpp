@@ -115,6 +115,31 @@ TEST_CASE("float32 answers keep their promise, and what they leave open float64 
     }
 }
 
+namespace {
+
+// Few bodies of every class, for the simulator that looks at every access.
+void check_few(std::uint32_t lanes) {
+    test::Random random(77);
+    INFO("seed 77, lanes " << lanes);
+    const Scene scene = test::random_bodies(18, 1.2, {0, 0, 0}, random);
+    const std::vector<Pair> pairs = test::all_pairs(scene);
+    REQUIRE(pairs.size() >= 128);  // on a device
+    for (std::uint32_t i = 0; i < list_devices().size(); ++i) {
+        Context context = test::with_lanes(i, lanes);
+        check_against_exact(context, 0.5, scene, pairs);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a narrow phase of few bodies", "[device][plain]") {
+    check_few(1);
+}
+
+TEST_CASE("a narrow phase of few bodies in lanes", "[device][plain]") {
+    check_few(8);
+}
+
 TEST_CASE("a narrow phase keeps up with a scene that changes", "[device]") {
     test::Random random(74);
     INFO("seed 74");
