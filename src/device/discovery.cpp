@@ -78,7 +78,7 @@ std::uint32_t lanes_of(DeviceType type, cl_uint native_width) {
 }
 
 std::string use_of(const DeviceInfo& info) {
-    const std::string precision = info.fp64 ? "" : ", float64 by pairs of floats";
+    const std::string precision = info.fp64 ? "" : ", float64 on the host";
     if (info.lanes > 1) return "all kernels, " + std::to_string(info.lanes) + " boxes at once on each core" + precision;
     return "all kernels, one box a work-item" + precision;
 }
