@@ -83,7 +83,7 @@ bool Incremental::build(BoxInput& boxes, const FilterInput& filters, View<const 
     forget();
     make_kernels();
     const std::uint32_t n = boxes.count();
-    if (pairs.size() > most_pairs_a_body * n || pairs.size() + 2 * n > most_pairs()) return false;
+    if (pairs.size() > most_pairs_a_body * n || pairs.size() + std::size_t{2} * n > most_pairs()) return false;
     if (!grid_.bin(boxes)) return false;
     grid_.keep_entries_only();
     any_invalid_ = grid_.any_invalid();

@@ -125,10 +125,9 @@ const AlgorithmRow& choose_algorithm(std::uint64_t count, std::uint64_t last_pai
     double tests = n * n / 16.0;
     if (boxes.empty() ? count > boxes_taken_as_usual_unseen : count > boxes_taken_as_usual && count <= most_boxes_swept)
         tests = boxes.empty() ? n * n : sweep_tests(boxes);
-    const Price* best = nullptr;
+    const Price* best = std::end(prices) - 1;  // is asked for any number
     for (const Price& price : prices)
-        if (count <= price.most_boxes &&
-            (best == nullptr || price_of(price, n, tests, pairs) < price_of(*best, n, tests, pairs)))
+        if (count <= price.most_boxes && price_of(price, n, tests, pairs) < price_of(*best, n, tests, pairs))
             best = &price;
     return algorithm_named(best->algorithm);
 }

@@ -17,11 +17,11 @@ constexpr std::uint8_t plane_class = 5;
 
 /// One cell. A's class is not above B's.
 struct MatrixRow {
-    std::uint8_t a, b;
     const char* module;   ///< the kernel's, in cl/narrow_phase/
     const char* defines;  ///< that the module is built with
-    bool lanes;           ///< a work-item does several pairs at once
     HostTouch host;       ///< the same routine in float64 on the host
+    std::uint8_t a, b;    ///< class numbers
+    bool lanes;           ///< a work-item does several pairs at once
 };
 
 /// All cells, in the order of their buckets. A new pair of classes is one header in cl/narrow_phase/, one module and

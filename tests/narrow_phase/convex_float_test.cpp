@@ -28,7 +28,7 @@ TEST_CASE("convex routine in float32 keeps what it promises", "[host]") {
                         const ConvexAnswer answer = convex_answer(pair);
                         INFO("seed " << seed << ", regime " << static_cast<int>(regime) << ", case " << i
                                      << text_of(pair));
-                        REQUIRE(broken_promise(pair, answer, unit, 2e-6, false, random) == "");
+                        REQUIRE_THAT(broken_promise(pair, answer, unit, 2e-6, false, random), Catch::Equals(""));
                         // Flat, unequal, parallel, concentric and touching bodies have slivers and ties, which answers
                         // tell of.
                         const bool plain = touching == 0 && (regime == Regime::any || regime == Regime::far_scale);
