@@ -73,7 +73,7 @@ void check_against_exact(Context& context, double precision, const Scene& scene,
 
 }  // namespace
 
-TEST_CASE("float64 answers are the same bytes on every device", "[device]") {
+TEST_CASE("float64 answers are the same bytes on every device", "[device][builds]") {
     test::Random random(71);
     INFO("seed 71");
     const Scene scene = test::random_bodies(60, 2.0, {0, 0, 0}, random);
@@ -99,7 +99,7 @@ TEST_CASE("float64 answers are the same bytes on every device", "[device]") {
         }
 }
 
-TEST_CASE("float32 answers keep their promise, and what they leave open float64 decides", "[device]") {
+TEST_CASE("float32 answers keep their promise, and what they leave open float64 decides", "[device][builds]") {
     for (const std::uint64_t seed : {72u, 73u}) {
         test::Random random(seed);
         INFO("seed " << seed);
