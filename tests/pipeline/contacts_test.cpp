@@ -211,7 +211,7 @@ TEST_CASE("contacts of balls and boxes on a device keep every promise", "[device
     check_precisions(context, 52, 2500);
 }
 
-TEST_CASE("few balls and boxes on a device", "[device][small]") {
+TEST_CASE("few balls and boxes on a device", "[device][plain]") {
     Context context;
     test::Random random(53);
     const World world = random_world(250, 0.0, random);
