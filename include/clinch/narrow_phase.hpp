@@ -65,10 +65,10 @@ public:
     NarrowPhase(NarrowPhase&& other) noexcept;
     NarrowPhase& operator=(NarrowPhase&& other) noexcept;
 
-    /// The contacts of those of `pairs` whose distance is at most the margins of the two bodies together, in the order
-    /// of `pairs`: ascending if those are. A pair of a body that is not there or rejected, of two planes, or with a
-    /// mesh, is InvalidArgument. Valid until the next call or the end of this object. Throws Error; then there is no
-    /// result.
+    /// The contacts of those of `pairs` whose distance is at most the margins of the two bodies together, or may be
+    /// within its error, in the order of `pairs`: ascending if those are. A pair of a body that is not there or
+    /// rejected, of two planes, or with a mesh, is InvalidArgument. Valid until the next call or the end of this
+    /// object. Throws Error; then there is no result.
     View<const Contact> find(const Scene& scene, View<const Pair> pairs);
 
     const NarrowReport& report() const noexcept;

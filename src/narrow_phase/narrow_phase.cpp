@@ -59,7 +59,7 @@ struct NarrowPhase::Impl {
     void find(const Scene& scene, View<const Pair> pairs);
     bool worth_a_device(std::size_t pairs) const;
     void find_on_host(const Scene& scene, View<const Pair> pairs);
-    void find_on_device(const Scene& scene, View<const Pair> pairs, bool shapes_changed);
+    void find_on_device(const Scene& scene, View<const Pair> pairs);
     void do_chunk(const Scene& scene, View<const Pair> pairs);
     void do_bucket(const Scene& scene, View<const Pair> pairs, std::size_t k);
     void run(std::size_t k, const BucketSlice& slice, unsigned bits);
@@ -91,10 +91,11 @@ void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs) {
     for (const MatrixRow& row : matrix()) report.buckets.push_back({classes_text(row), row.module, 0, 0});
     const Stopwatch upload;
     const bool shapes_changed = shapes.update(scene);
+    if (shapes_changed && on_device) on_device->shapes_changed();  // also where this call has no need of the device
     report.ms.upload = upload.ms();
     try {
         if (worth_a_device(pairs.size()))
-            find_on_device(scene, pairs, shapes_changed);
+            find_on_device(scene, pairs);
         else
             find_on_host(scene, pairs);
     } catch (...) {
@@ -130,14 +131,13 @@ void NarrowPhase::Impl::find_on_host(const Scene& scene, View<const Pair> pairs)
     report.ms.routines = watch.ms();
 }
 
-void NarrowPhase::Impl::find_on_device(const Scene& scene, View<const Pair> pairs, bool shapes_changed) {
+void NarrowPhase::Impl::find_on_device(const Scene& scene, View<const Pair> pairs) {
     if (!on_device) {
         on_device = std::make_unique<NarrowScene>(device());
         slots = std::make_unique<Slots>(device());
     }
     const Stopwatch upload;
     on_device->update_classes(scene, shapes);
-    if (shapes_changed) on_device->shapes_changed();
     on_device->update(scene, shapes, level == Level::Exact ? 64 : 32);
     stage_done();
     report.ms.upload += upload.ms();
@@ -212,7 +212,7 @@ Kernel& NarrowPhase::Impl::kernel(std::size_t k, unsigned bits) {
 }
 
 void NarrowPhase::Impl::run(std::size_t k, const BucketSlice& slice, unsigned bits) {
-    constexpr std::uint32_t slot_block = 16;
+    constexpr std::uint32_t slot_block = Slots::block;
     const DeviceInfo& info = device().info();
     const std::uint32_t most_items = info.compute_units * (info.lanes > 1 ? 16u : 65536u);
     const std::uint32_t per_item = info.lanes > 1 ? ((slice.count - 1) / most_items / slot_block + 1) * slot_block

@@ -12,12 +12,11 @@ namespace {
 
 constexpr const char* module = "narrow_phase/buckets";
 constexpr std::uint32_t most_buckets = 32;
-constexpr std::uint32_t slot_block =
-    16;  // buckets begin at a multiple: vectors of answers end in the bucket's own slots
 constexpr unsigned key_bits = 5;
+constexpr std::uint32_t hit_bit = 1, float64_bit = 4;  // HIT and FLOAT64 of cl/narrow_phase/driver.clh
 
 std::uint32_t in_blocks(std::uint32_t count) {
-    return (count + slot_block - 1) / slot_block * slot_block;
+    return (count + Slots::block - 1) / Slots::block * Slots::block;
 }
 
 }  // namespace
@@ -78,7 +77,7 @@ void Slots::number_slots(const std::vector<std::uint64_t>& counts) {
         slots_used_ += in_blocks(count);
     }
     // Room for every pair a second time: it may be undecided.
-    const std::size_t slots = with_rests_ ? std::size_t{2} * slots_used_ + matrix().size() * slot_block : slots_used_;
+    const std::size_t slots = with_rests_ ? std::size_t{2} * slots_used_ + matrix().size() * block : slots_used_;
     stride_ = std::max<std::uint64_t>(stride_, slots);
     device_.reserve(answers_, stride_ * (answer_columns + (with_rests_ ? rest_columns : 0)) * sizeof(float), "answers");
     device_.reserve(hits_, stride_ * sizeof(std::uint32_t), "the hits among pairs");
@@ -122,7 +121,7 @@ BucketSlice Slots::undecided(const BucketSlice& bucket) {
 void Slots::put(const BucketSlice& slice, const std::vector<HostAnswer>& answers) {
     std::vector<std::uint32_t> hits(slice.count);
     for (std::size_t i = 0; i < hits.size(); ++i)
-        hits[i] = (answers[i].hit ? 1U : 0U) | (with_rests_ ? 4U : 0U);  // HIT, FLOAT64
+        hits[i] = (answers[i].hit ? hit_bit : 0) | (with_rests_ ? float64_bit : 0);
     device_.write(hits_, hits.data(), hits.size() * sizeof hits[0], slice.first_slot * sizeof hits[0]);
     std::vector<float> column(slice.count), rest(slice.count);
     const auto put = [&](std::size_t c, std::size_t r, auto value) {

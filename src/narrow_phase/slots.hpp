@@ -43,6 +43,9 @@ public:
     /// Most pairs a chunk may have.
     static constexpr std::size_t chunk_pairs = std::size_t{1} << 18;
 
+    /// Slots of a bucket begin at a multiple of this: vectors of answers end in the bucket's own slots.
+    static constexpr std::uint32_t block = 16;
+
     /// Sends the pairs, counts them by bucket, sorts them by it if there are several, and numbers their slots. Waits. A
     /// pair without a bucket is InvalidArgument. `with_rests`: answers may be float64.
     void group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_t bodies, bool with_rests);

@@ -73,7 +73,7 @@ void check_against_exact(Context& context, double precision, const Scene& scene,
 
 }  // namespace
 
-TEST_CASE("float64 answers are the same bytes on every device", "[device][builds]") {
+TEST_CASE("float64 answers of a device are those of the host, to what two floats hold", "[device][builds]") {
     test::Random random(71);
     INFO("seed 71");
     const Scene scene = test::random_bodies(60, 2.0, {0, 0, 0}, random);
@@ -148,6 +148,8 @@ TEST_CASE("a narrow phase keeps up with a scene that changes", "[device]") {
     NarrowPhase kept(context);
     for (int step = 0; step < 6; ++step) {
         const std::vector<Pair> pairs = test::all_pairs(scene);
+        // So few need no device, which must hear of what changed all the same.
+        kept.find(scene, {pairs.data(), 2});
         const View<const Contact> contacts = kept.find(scene, pairs);
         CHECK(same_bytes({contacts.begin(), contacts.end()}, found(context, {}, scene, pairs)));
         const BodyId moved{static_cast<std::uint32_t>(random.below(scene.row_count()))};
