@@ -24,6 +24,11 @@ struct NarrowPhaseOptions {
     /// Instead of `precision`: the error that answers may have, in the scene's unit of length. Pairs of which float32
     /// cannot promise it are done in float64; those that still miss it are counted in NarrowReport::tolerance_missed.
     std::optional<double> tolerance;
+    /// Most points of a pair's manifold, 1 to 8. 1: the witness points alone, `feature` 0. More: of where a face, or
+    /// the line of a round side, lies along the other body, the points that hold the two apart together, too. They
+    /// share the normal, and each point's distance is that along the normal, there. The deepest, which has the distance
+    /// and error of the pair, is always among them; the others are spread around it, and within the margins.
+    std::uint32_t contacts_per_pair = 1;
     /// Wait for the device after each stage, so that NarrowTimes are those of the stages.
     bool measure_stages = false;
 };
@@ -31,10 +36,11 @@ struct NarrowPhaseOptions {
 /// Milliseconds of wall time a stage took.
 struct NarrowTimes {
     double total = 0.0;
-    double upload = 0.0;    ///< changed bodies and shapes, and the pairs
-    double buckets = 0.0;   ///< grouping pairs by the classes of their shapes
-    double routines = 0.0;  ///< computing the answers
-    double gather = 0.0;    ///< contacts into one list, on the host
+    double upload = 0.0;     ///< changed bodies and shapes, and the pairs
+    double buckets = 0.0;    ///< grouping pairs by the classes of their shapes
+    double routines = 0.0;   ///< computing the answers
+    double manifolds = 0.0;  ///< the further points of contacts
+    double gather = 0.0;     ///< contacts into one list, on the host
 };
 
 /// One cell of the algorithm matrix that had work.
@@ -66,9 +72,9 @@ public:
     NarrowPhase& operator=(NarrowPhase&& other) noexcept;
 
     /// The contacts of those of `pairs` whose distance is at most the margins of the two bodies together, or may be
-    /// within its error, in the order of `pairs`: ascending if those are. A pair of a body that is not there or
-    /// rejected, of two planes, or with a mesh, is InvalidArgument. Valid until the next call or the end of this
-    /// object. Throws Error; then there is no result.
+    /// within its error, in the order of `pairs`: ascending if those are; those of one pair by ascending feature. A
+    /// pair of a body that is not there or rejected, of two planes, or with a mesh, is InvalidArgument. Valid until the
+    /// next call or the end of this object. Throws Error; then there is no result.
     View<const Contact> find(const Scene& scene, View<const Pair> pairs);
 
     const NarrowReport& report() const noexcept;

@@ -15,6 +15,9 @@ namespace clinch::detail {
 /// Row of the matrix for a pair; null where there is none: see Slots::group.
 const MatrixRow* row_of(const Scene& scene, const NarrowShapes& shapes, const Pair& pair);
 
+/// A row's body for the host's routines; it points into `shapes`.
+host::Side host_side(const Scene& scene, const NarrowShapes& shapes, std::uint32_t row);
+
 /// Answers for pairs that all have a row, in their order. Several threads above a few hundred pairs.
 std::vector<HostAnswer> touch_on_host(const Scene& scene, const NarrowShapes& shapes, View<const Pair> pairs);
 

@@ -75,6 +75,11 @@ std::string classes_text(const MatrixRow& row) {
     return std::string(class_names[row.a]) + '-' + class_names[row.b];
 }
 
+std::string number_defines(const DeviceInfo& device, unsigned bits) {
+    return " -DREAL_BITS=" + std::to_string(bits) +
+           (device.exact_division ? " -DEXACT_FP32=1 -cl-fp32-correctly-rounded-divide-sqrt" : "");
+}
+
 void throw_no_routine(const Pair& pair) {
     throw Error(ErrorCode::InvalidArgument, "the pair " + std::to_string(pair.a) + ", " + std::to_string(pair.b) +
                                                 " cannot be tested: pairs with a < b of bodies that are there and not "

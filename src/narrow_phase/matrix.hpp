@@ -6,6 +6,7 @@
 #include <string>
 
 #include "clinch/aabb.hpp"
+#include "clinch/device.hpp"
 #include "clinch/view.hpp"
 #include "src/narrow_phase/routines.hpp"
 
@@ -32,6 +33,8 @@ constexpr std::uint8_t no_bucket = 31;
 const std::array<std::uint8_t, 64>& bucket_table();
 /// "sphere-box"
 std::string classes_text(const MatrixRow& row);
+/// What kernels that compute with real.clh are built with, for numbers of `bits` on a device.
+std::string number_defines(const DeviceInfo& device, unsigned bits);
 /// InvalidArgument for a pair that the matrix has no cell for, or whose bodies cannot touch.
 [[noreturn]] void throw_no_routine(const Pair& pair);
 

@@ -13,6 +13,7 @@
 #include "src/device/stopwatch.hpp"
 #include "src/narrow_phase/contact_list.hpp"
 #include "src/narrow_phase/host_narrow.hpp"
+#include "src/narrow_phase/manifolds.hpp"
 #include "src/narrow_phase/matrix.hpp"
 #include "src/narrow_phase/narrow_scene.hpp"
 #include "src/narrow_phase/slots.hpp"
@@ -34,6 +35,9 @@ void check_options(const NarrowPhaseOptions& options) {
     if (!(options.precision >= 0.0 && options.precision <= 1.0))
         throw Error(ErrorCode::InvalidArgument,
                     "precision is " + std::to_string(options.precision) + " and must be from 0 to 1");
+    if (options.contacts_per_pair < 1 || options.contacts_per_pair > most_points)
+        throw Error(ErrorCode::InvalidArgument, "contacts_per_pair is " + std::to_string(options.contacts_per_pair) +
+                                                    " and must be from 1 to " + std::to_string(most_points));
     if (options.tolerance && !(*options.tolerance > 0.0 && std::isfinite(*options.tolerance)))
         throw Error(ErrorCode::InvalidArgument,
                     "tolerance is " + std::to_string(*options.tolerance) + " and must be a positive length");
@@ -42,7 +46,8 @@ void check_options(const NarrowPhaseOptions& options) {
 }  // namespace
 
 struct NarrowPhase::Impl {
-    Impl(Context& c, const NarrowPhaseOptions& o) : context(c.impl()), options(o), level(level_of(o)) {
+    Impl(Context& c, const NarrowPhaseOptions& o)
+        : context(c.impl()), options(o), level(level_of(o)), shapes(o.contacts_per_pair > 1) {
         check_options(o);
     }
 
@@ -52,6 +57,8 @@ struct NarrowPhase::Impl {
     NarrowShapes shapes;
     std::unique_ptr<NarrowScene> on_device;
     std::unique_ptr<Slots> slots;
+    std::unique_ptr<Manifolds> manifolds;
+    ManifoldPoints points;
     std::array<std::array<Kernel, 2>, 32> kernels;  // of a bucket: in 32 and 64 bits
     ContactList contacts;
     NarrowReport report;
@@ -68,6 +75,8 @@ struct NarrowPhase::Impl {
         run(k, slice, 64);
     }
     void run_on_host(const Scene& scene, View<const Pair> pairs, const BucketSlice& slice);
+    void gather(const Scene& scene);
+    const ManifoldPoints* points_of(const Scene& scene, const GatheredContacts& gathered);
     Kernel& kernel(std::size_t k, unsigned bits);
     bool in_float32(const MatrixRow& row) const;
     Device& device() const { return context.open(context.primary()); }
@@ -125,9 +134,13 @@ void NarrowPhase::Impl::find_on_host(const Scene& scene, View<const Pair> pairs)
         if (row == nullptr) throw_no_routine(pair);
         ++report.buckets[static_cast<std::size_t>(row - matrix().data())].pairs;
     }
-    for (std::size_t first = 0; first < pairs.size(); first += Slots::chunk_pairs)
-        contacts.append(
-            touch_on_host(scene, shapes, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)}));
+    for (std::size_t first = 0; first < pairs.size(); first += Slots::chunk_pairs) {
+        const std::vector<HostAnswer> answers =
+            touch_on_host(scene, shapes, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)});
+        const bool with_points = options.contacts_per_pair > 1;
+        if (with_points) manifolds_on_host(scene, shapes, answers, options.contacts_per_pair, points);
+        contacts.append(answers, with_points ? &points : nullptr);
+    }
     report.ms.routines = watch.ms();
 }
 
@@ -155,16 +168,38 @@ void NarrowPhase::Impl::do_chunk(const Scene& scene, View<const Pair> pairs) {
         if (slots->bucket(k).count > 0) do_bucket(scene, pairs, k);
     stage_done();
     report.ms.routines += routines.ms();
-    const Stopwatch gather;
+    gather(scene);
+}
+
+void NarrowPhase::Impl::gather(const Scene& scene) {
+    const Stopwatch watch;
     const bool rests = level != Level::Fast;
     const std::uint32_t count = slots->gather();
+    double in_manifolds = 0.0;
     if (count > 0) {
         const std::size_t columns = 2 + answer_columns + (rests ? rest_columns : 0);
         const Mapping mapping =
             device().map(slots->contacts(), columns * slots->contact_stride() * sizeof(std::uint32_t));
-        contacts.append(mapping.as<std::uint32_t>(), slots->contact_stride(), count, rests);
+        const GatheredContacts gathered{mapping.as<std::uint32_t>(), slots->contact_stride(), count, rests};
+        const Stopwatch manifold;
+        const ManifoldPoints* const found = options.contacts_per_pair > 1 ? points_of(scene, gathered) : nullptr;
+        in_manifolds = manifold.ms();
+        contacts.append(gathered, found);
     }
-    report.ms.gather += gather.ms();
+    report.ms.manifolds += in_manifolds;
+    report.ms.gather += watch.ms() - in_manifolds;
+}
+
+// The manifolds of what slots.gather() left on the device.
+const ManifoldPoints* NarrowPhase::Impl::points_of(const Scene& scene, const GatheredContacts& gathered) {
+    if (!manifolds) manifolds = std::make_unique<Manifolds>(device());
+    if (manifolds->can(shapes)) {
+        const unsigned bits = level == Level::Exact ? 64 : 32;
+        manifolds->find(*on_device, *slots, gathered.count, gathered.rests, bits, options.contacts_per_pair, points);
+    } else {
+        manifolds_on_host(scene, shapes, answers_of(gathered), options.contacts_per_pair, points);
+    }
+    return &points;
 }
 
 // Whether the device is asked in float32 first.
@@ -203,10 +238,8 @@ Kernel& NarrowPhase::Impl::kernel(std::size_t k, unsigned bits) {
     Kernel& kernel = kernels[k][bits == 64 ? 1 : 0];
     if (kernel) return kernel;
     const MatrixRow& row = matrix()[k];
-    std::string defines = std::string(row.defines) + " -DREAL_BITS=" + std::to_string(bits);
-    if (!row.lanes) defines += " -DPAIR_LANES=1";
-    if (context.infos[context.primary()].exact_division)
-        defines += " -DEXACT_FP32=1 -cl-fp32-correctly-rounded-divide-sqrt";
+    const std::string defines = std::string(row.defines) + number_defines(context.infos[context.primary()], bits) +
+                                (row.lanes ? "" : " -DPAIR_LANES=1");
     kernel = device().kernel(row.module, "touch_pairs", defines);
     return kernel;
 }

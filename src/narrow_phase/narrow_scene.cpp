@@ -42,6 +42,7 @@ void round_frame(const BodyFrame64& from, BodyFrame64& to) {
 struct FillShape {
     NarrowShape64& record;
     std::vector<double>& vertices;
+    std::vector<Vec3>& points;  // of a hull: its outermost
 
     void set(double a, double b = 0.0, double c = 0.0) const {
         record.size[0] = a;
@@ -61,7 +62,7 @@ struct FillShape {
         record.normal[2] = s.normal.z / length;
     }
     void operator()(const Hull& s) const {
-        const std::vector<Vec3> points = outermost_points(s.points);
+        points = outermost_points(s.points);
         record.first_vertex = static_cast<std::uint32_t>(vertices.size());
         record.vertex_count = static_cast<std::uint32_t>(points.size());
         record.stride = static_cast<std::uint32_t>((points.size() + vertex_block - 1) / vertex_block * vertex_block);
@@ -77,8 +78,22 @@ struct FillShape {
 void NarrowShapes::add(const Shape& shape) {
     NarrowShape64 record{};
     record.kind = static_cast<std::uint32_t>(shape.index());
-    if (why_invalid(shape).empty()) std::visit(FillShape{record, vertices_}, shape);
+    std::vector<Vec3> points;
+    if (why_invalid(shape).empty()) std::visit(FillShape{record, vertices_, points}, shape);
+    if (with_faces_ && !points.empty()) add_faces(record, points);
     records_.push_back(record);
+}
+
+void NarrowShapes::add_faces(NarrowShape64& record, const std::vector<Vec3>& points) {
+    record.first_face = static_cast<std::uint32_t>(faces_.size());
+    for (const HullFace& face : hull_faces(points)) {
+        faces_.push_back({{face.normal.x, face.normal.y, face.normal.z},
+                          face.thickness,
+                          static_cast<std::uint32_t>(corners_.size()),
+                          static_cast<std::uint32_t>(face.corners.size())});
+        corners_.insert(corners_.end(), face.corners.begin(), face.corners.end());
+    }
+    record.face_count = static_cast<std::uint32_t>(faces_.size()) - record.first_face;
 }
 
 bool NarrowShapes::update(const Scene& scene) {
@@ -87,6 +102,8 @@ bool NarrowShapes::update(const Scene& scene) {
         return false;
     records_.clear();
     vertices_.clear();
+    faces_.clear();
+    corners_.clear();
     for (std::size_t i = 0; i < store.size(); ++i) add(store[i].shape);
     identity_ = scene.impl().identity;
     version_ = store.version();
@@ -138,7 +155,7 @@ void NarrowScene::send_frames(const Scene& scene, Frames<Frame>& frames) {
 }
 
 template <class T>
-void NarrowScene::send_shapes(const NarrowShapes& shapes, Buffer& records, Buffer& vertices, bool& sent) {
+void NarrowScene::send_shapes(const NarrowShapes& shapes, Shapes& to) {
     std::vector<NarrowShapeOf<T>> rounded(shapes.records().size());
     for (std::size_t i = 0; i < rounded.size(); ++i) {
         const NarrowShape64& from = shapes.records()[i];
@@ -150,21 +167,40 @@ void NarrowScene::send_shapes(const NarrowShapes& shapes, Buffer& records, Buffe
         rounded[i].first_vertex = from.first_vertex;
         rounded[i].vertex_count = from.vertex_count;
         rounded[i].stride = from.stride;
+        rounded[i].first_face = from.first_face;
+        rounded[i].face_count = from.face_count;
     }
     const std::vector<T> points(shapes.vertices().begin(), shapes.vertices().end());
-    device_.reserve(records, rounded.size() * sizeof rounded[0], "shapes");
-    device_.reserve(vertices, points.size() * sizeof(T), "the vertices of hulls");
-    device_.write(records, rounded.data(), rounded.size() * sizeof rounded[0]);
-    device_.write(vertices, points.data(), points.size() * sizeof(T));
-    sent = true;
+    device_.reserve(to.records, rounded.size() * sizeof rounded[0], "shapes");
+    device_.reserve(to.vertices, points.size() * sizeof(T), "the vertices of hulls");
+    device_.write(to.records, rounded.data(), rounded.size() * sizeof rounded[0]);
+    device_.write(to.vertices, points.data(), points.size() * sizeof(T));
+    if (!shapes.faces().empty()) send_faces<T>(shapes, to);
+    to.sent = true;
+}
+
+template <class T>
+void NarrowScene::send_faces(const NarrowShapes& shapes, Shapes& to) {
+    std::vector<NarrowFaceOf<T>> rounded;
+    rounded.reserve(shapes.faces().size());
+    for (const NarrowFace64& from : shapes.faces())
+        rounded.push_back(
+            {{static_cast<T>(from.normal[0]), static_cast<T>(from.normal[1]), static_cast<T>(from.normal[2])},
+             static_cast<T>(from.thickness),
+             from.first_corner,
+             from.corners});
+    device_.reserve(to.faces, rounded.size() * sizeof rounded[0], "the faces of hulls");
+    device_.reserve(to.corners, shapes.corners().size() * sizeof(std::uint32_t), "the corners of faces");
+    device_.write(to.faces, rounded.data(), rounded.size() * sizeof rounded[0]);
+    device_.write(to.corners, shapes.corners().data(), shapes.corners().size() * sizeof(std::uint32_t));
 }
 
 void NarrowScene::update(const Scene& scene, const NarrowShapes& shapes, unsigned bits) {
     if (bits == 64) {
-        if (!sent64_) send_shapes<double>(shapes, shapes64_, vertices64_, sent64_);
+        if (!shapes64_.sent) send_shapes<double>(shapes, shapes64_);
         send_frames(scene, frames64_);
     } else {
-        if (!sent32_) send_shapes<float>(shapes, shapes32_, vertices32_, sent32_);
+        if (!shapes32_.sent) send_shapes<float>(shapes, shapes32_);
         send_frames(scene, frames32_);
     }
 }
@@ -198,7 +234,7 @@ void NarrowScene::forget() {
     frames32_.tracker.forget();
     frames64_.tracker.forget();
     class_tracker_.forget();
-    sent32_ = sent64_ = false;
+    shapes_changed();
 }
 
 }  // namespace clinch::detail

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <string>
 #include <tuple>
 
 namespace clinch::detail {
@@ -78,15 +79,14 @@ struct Facet {
 // destructor lives in between. What it would print goes to a file that keeps nothing.
 class QhullRun {
 public:
-    explicit QhullRun(const std::vector<Vec3>& points)
+    QhullRun(const std::vector<Vec3>& points, std::string options)
         : points_(points), qhull_(std::make_unique<qhT>()), nowhere_(open_nowhere()) {
         if (!nowhere_ || points.size() > INT_MAX) return;
         qh_zero(qhull_.get(), nowhere_.get());
         // Qhull takes coordinates it may change only with other options than these.
         auto* coordinates = const_cast<coordT*>(&points.front().x);
-        char options[] = "qhull Qc Pp";
-        status_ = qh_new_qhull(qhull_.get(), 3, static_cast<int>(points.size()), coordinates, False, options, nullptr,
-                               nowhere_.get());
+        status_ = qh_new_qhull(qhull_.get(), 3, static_cast<int>(points.size()), coordinates, False, options.data(),
+                               nullptr, nowhere_.get());
         used_ = true;
     }
     ~QhullRun() {
@@ -102,9 +102,8 @@ public:
 
     // Marks vertices and points on or near a facet in `kept`, and gives every facet's plane.
     std::vector<Facet> facets(std::vector<char>& kept) const {
-        qhT* qh = qhull_.get();
         std::vector<Facet> out;
-        for (facetT* facet = qh->facet_list; facet != nullptr && facet->next != nullptr; facet = facet->next) {
+        for_each_facet([&](const facetT* facet) {
             Facet f{{facet->normal[0], facet->normal[1], facet->normal[2]}, INFINITY};
             for_each(facet->vertices, [&](void* element) {
                 const std::size_t i = index(static_cast<vertexT*>(element)->point);
@@ -113,7 +112,20 @@ public:
             });
             for_each(facet->coplanarset, [&](void* element) { kept[index(static_cast<pointT*>(element))] = 1; });
             out.push_back(f);
-        }
+        });
+        return out;
+    }
+
+    // Every facet's normal and vertices, in no order.
+    std::vector<HullFace> faces() const {
+        std::vector<HullFace> out;
+        for_each_facet([&](const facetT* facet) {
+            HullFace face{{facet->normal[0], facet->normal[1], facet->normal[2]}, 0.0, {}};
+            for_each(facet->vertices, [&](void* element) {
+                face.corners.push_back(static_cast<std::uint32_t>(index(static_cast<vertexT*>(element)->point)));
+            });
+            out.push_back(std::move(face));
+        });
         return out;
     }
 
@@ -125,6 +137,11 @@ private:
 #else
         return {std::fopen("/dev/null", "w"), &std::fclose};
 #endif
+    }
+    template <class F>
+    void for_each_facet(const F& use) const {
+        for (const facetT* facet = qhull_->facet_list; facet != nullptr && facet->next != nullptr; facet = facet->next)
+            use(facet);
     }
     template <class F>
     static void for_each(const setT* set, const F& use) {
@@ -188,6 +205,47 @@ Vec3 centre_of(const std::vector<Vec3>& points, const std::vector<char>& kept) {
     return {sum.x / count, sum.y / count, sum.z / count};
 }
 
+Vec3 cross(const Vec3& a, const Vec3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+// Leaves the corners that make the face's outline, seen along its normal, in order [Andrew's monotone chain, 1979], and
+// measures its thickness, times 2 to the `exponent`.
+void make_face(const std::vector<Vec3>& points, HullFace& face, int exponent) {
+    const Vec3& n = face.normal;
+    const Vec3 away = std::fabs(n.x) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+    const Vec3 u = cross(away, n), v = cross(n, u);
+    struct Flat {
+        double x, y;
+        std::uint32_t corner;
+    };
+    std::vector<Flat> flat;
+    double low = INFINITY, high = -INFINITY;
+    for (const std::uint32_t i : face.corners) {
+        flat.push_back({dot(u, points[i]), dot(v, points[i]), i});
+        low = std::min(low, dot(n, points[i]));
+        high = std::max(high, dot(n, points[i]));
+    }
+    face.thickness = std::ldexp(high - low, exponent);
+    std::sort(flat.begin(), flat.end(),
+              [](const Flat& a, const Flat& b) { return std::tie(a.x, a.y, a.corner) < std::tie(b.x, b.y, b.corner); });
+    std::vector<Flat> chain;
+    const auto extend = [&](const Flat& p, std::size_t least) {
+        while (chain.size() > least) {
+            const Flat &b = chain.back(), &a = chain[chain.size() - 2];
+            if ((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x) > 0.0) break;
+            chain.pop_back();
+        }
+        chain.push_back(p);
+    };
+    for (const Flat& p : flat) extend(p, 1);
+    const std::size_t lower = chain.size();
+    for (std::size_t i = flat.size() - 1; i-- > 0;) extend(flat[i], lower);
+    chain.pop_back();
+    face.corners.clear();
+    for (const Flat& p : chain) face.corners.push_back(p.corner);
+}
+
 }  // namespace
 
 bool spans_volume(const std::vector<Vec3>& points) {
@@ -214,7 +272,7 @@ std::vector<Vec3> outermost_points(std::vector<Vec3> points) {
         points.end());
     if (points.size() < 5) return points;
     const std::vector<Vec3> scaled = normalized(points).points;
-    const QhullRun run(scaled);
+    const QhullRun run(scaled, "qhull Qc Pp");
     if (!run.ok()) return points;
     std::vector<char> kept(points.size(), 0);
     std::vector<Facet> facets = run.facets(kept);
@@ -225,6 +283,24 @@ std::vector<Vec3> outermost_points(std::vector<Vec3> points) {
         if (kept[i] || !inside(scaled[i])) out.push_back(points[i]);
     }
     return out;
+}
+
+std::vector<HullFace> hull_faces(const std::vector<Vec3>& points) {
+    if (points.size() < 4) return {};
+    const auto [scaled, exponent] = normalized(points);
+    // Facets whose middles are within so much of their neighbours' planes are one; some hulls Qhull can only do
+    // without.
+    for (const char* options : {"qhull C-1e-6 Pp", "qhull Pp"}) {
+        const QhullRun run(scaled, options);
+        if (!run.ok()) continue;
+        std::vector<HullFace> faces = run.faces();
+        for (HullFace& face : faces) make_face(scaled, face, -exponent);
+        faces.erase(
+            std::remove_if(faces.begin(), faces.end(), [](const HullFace& face) { return face.corners.size() < 3; }),
+            faces.end());
+        return faces;
+    }
+    return {};
 }
 
 }  // namespace clinch::detail

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "clinch/pose.hpp"
@@ -18,5 +19,16 @@ bool spans_volume(const std::vector<Vec3>& points);
 /// that Qhull cannot handle (all in a plane) come back all. O(n log n) when most points are inside
 /// by a margin, at worst n times the number of the hull's facets.
 std::vector<Vec3> outermost_points(std::vector<Vec3> points);
+
+/// A face of a convex hull.
+struct HullFace {
+    Vec3 normal;                         ///< unit length, outward
+    double thickness;                    ///< no corner is farther below the plane through the highest than this
+    std::vector<std::uint32_t> corners;  ///< numbers of points, counterclockwise seen from outside; at least 3
+};
+
+/// The faces of the hull of `points`. Triangles whose planes rounding to float32 may have turned apart make one face:
+/// it then has a thickness. Points that Qhull cannot handle have no faces. All coordinates are finite.
+std::vector<HullFace> hull_faces(const std::vector<Vec3>& points);
 
 }  // namespace clinch::detail

@@ -2,6 +2,8 @@
 // the inputs as a device's scene does.
 #pragma once
 
+#include <limits>
+
 #include "tests/narrow_phase/closed_form_cases.hpp"
 
 namespace clinch::detail::REAL_NAMESPACE {
@@ -100,6 +102,7 @@ inline test::Answer answer(const test::TruePair& pair) {
     real way[3];
     for (std::size_t d = 0; d < 3; ++d) way[d] = way_between(pair.a.position[d], pair.b.position[d], &slack);
     Touch touch{};
+    touch.limit = std::numeric_limits<real>::max();
     routine_of(pair.a.kind, pair.b.kind)(&a.side, &b.side, v_of(way[0], way[1], way[2]), &touch);
     test::Answer answer;
     answer.distance = static_cast<double>(touch.distance);

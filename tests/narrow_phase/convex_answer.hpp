@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "tests/narrow_phase/convex_cases.hpp"
@@ -57,6 +58,7 @@ inline test::ConvexAnswer convex_answer(const test::ConvexBodies& pair) {
     hold(pair.a, a);
     hold(pair.b, b);
     Touch touch{};
+    touch.limit = std::numeric_limits<real>::max();
     touch_convex_of(pair.a.kind, pair.b.kind, &a.side, &b.side, way_between(pair), &touch);
     return in_double(touch);
 }
@@ -67,6 +69,7 @@ inline test::ConvexAnswer convex_answer(const test::ConvexBodies& pair, double l
     hold(pair.a, a);
     hold(pair.b, b);
     Touch touch{};
+    touch.limit = std::numeric_limits<real>::max();
     touch_convex_within(pair.a.kind, pair.b.kind, &a.side, &b.side, way_between(pair), static_cast<real>(limit),
                         static_cast<real>(tolerance), &touch);
     return in_double(touch);
