@@ -71,7 +71,8 @@ host::Manifold manifold_of(const Scene& scene, const NarrowShapes& shapes, const
 
 }  // namespace
 
-bool Manifolds::can(const NarrowShapes& shapes) const {
+bool Manifolds::can(const NarrowShapes& shapes, unsigned bits) const {
+    if (bits == 64 && !device_.info().fp64) return false;
     const std::uint32_t most = most_loop_iterations(device_.info());
     if (most == std::numeric_limits<std::uint32_t>::max()) return true;
     // A contact looks at all corners of all faces, and at its edges four times over.

@@ -32,8 +32,8 @@ class Manifolds {
 public:
     explicit Manifolds(Device& device) : device_(device) {}
 
-    /// Whether the device can do hulls such as these.
-    bool can(const NarrowShapes& shapes) const;
+    /// Whether the device can do hulls such as these in 32 or 64 bits.
+    bool can(const NarrowShapes& shapes, unsigned bits) const;
     /// Up to `wanted` (2 to most_points) points of each of the `count` contacts that slots.gather() left on the device,
     /// computed in 32 or 64 bits, for which the scene must be up to date. Waits.
     void find(const NarrowScene& scene, const Slots& slots, std::uint32_t count, bool with_rests, unsigned bits,

@@ -76,6 +76,7 @@ struct NarrowPhase::Impl {
     }
     void run_on_host(const Scene& scene, View<const Pair> pairs, const BucketSlice& slice);
     void gather(const Scene& scene);
+    bool may_have_points() const;
     const ManifoldPoints* points_of(const Scene& scene, const GatheredContacts& gathered);
     Kernel& kernel(std::size_t k, unsigned bits);
     bool in_float32(const MatrixRow& row) const;
@@ -182,7 +183,7 @@ void NarrowPhase::Impl::gather(const Scene& scene) {
             device().map(slots->contacts(), columns * slots->contact_stride() * sizeof(std::uint32_t));
         const GatheredContacts gathered{mapping.as<std::uint32_t>(), slots->contact_stride(), count, rests};
         const Stopwatch manifold;
-        const ManifoldPoints* const found = options.contacts_per_pair > 1 ? points_of(scene, gathered) : nullptr;
+        const ManifoldPoints* const found = may_have_points() ? points_of(scene, gathered) : nullptr;
         in_manifolds = manifold.ms();
         contacts.append(gathered, found);
     }
@@ -190,11 +191,20 @@ void NarrowPhase::Impl::gather(const Scene& scene) {
     report.ms.gather += watch.ms() - in_manifolds;
 }
 
+// A sphere touches in one point.
+bool NarrowPhase::Impl::may_have_points() const {
+    if (options.contacts_per_pair == 1) return false;
+    for (std::size_t k = 0; k < slots->bucket_count(); ++k)
+        if (slots->bucket(k).count > 0 && matrix()[k].a != sphere_class) return true;
+    return false;
+}
+
 // The manifolds of what slots.gather() left on the device.
 const ManifoldPoints* NarrowPhase::Impl::points_of(const Scene& scene, const GatheredContacts& gathered) {
     if (!manifolds) manifolds = std::make_unique<Manifolds>(device());
-    if (manifolds->can(shapes)) {
-        const unsigned bits = level == Level::Exact ? 64 : 32;
+    const unsigned bits = level == Level::Exact || options.tolerance ? 64 : 32;
+    if (manifolds->can(shapes, bits)) {
+        on_device->update(scene, shapes, bits);
         manifolds->find(*on_device, *slots, gathered.count, gathered.rests, bits, options.contacts_per_pair, points);
     } else {
         manifolds_on_host(scene, shapes, answers_of(gathered), options.contacts_per_pair, points);

@@ -228,9 +228,11 @@ void check_manifold(const Scene& scene, const Contact& whole, const std::vector<
         const double off_b =
             test::surface_distance(scene.shape({scene.columns().shape[c.b]}), scene.body({c.b}).pose, c.on_b);
         INFO("feature " << std::hex << c.feature << std::dec << ", distance " << c.distance << ", error " << c.error);
-        // Points may be off along the surface as far as off it.
-        CHECK(std::abs(off_a) <= 4.0 * c.error + 4e-6);
-        CHECK(std::abs(off_b) <= 4.0 * c.error + 4e-6);
+        // Points may be off along the surface as far as off it; the witness of round bodies, where the distance has its
+        // minimum, by the root of how far that is off.
+        const double off = c.distance == deepest->distance ? std::sqrt(c.error) : 4.0 * c.error + 4e-6;
+        CHECK(std::abs(off_a) <= off);
+        CHECK(std::abs(off_b) <= off);
     }
 }
 

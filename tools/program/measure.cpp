@@ -44,7 +44,7 @@ Measured measure(std::uint64_t repeat, const std::function<StepOutcome(std::uint
                                      &StageTimes::narrow, &StageTimes::download});
     if (!narrow_runs.empty())
         measured.narrow = medians(narrow_runs, {&NarrowTimes::total, &NarrowTimes::upload, &NarrowTimes::buckets,
-                                                &NarrowTimes::routines, &NarrowTimes::gather});
+                                                &NarrowTimes::routines, &NarrowTimes::manifolds, &NarrowTimes::gather});
     return measured;
 }
 

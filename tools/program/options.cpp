@@ -90,7 +90,8 @@ StepOptions check_step_options(const StepTexts& t, bool narrow) {
     if (!options.host_only || narrow) check_devices(options.devices);
     options.narrow.precision = io::parse_number(t.precision, "--precision", 0.0, 1.0);
     options.narrow.tolerance = check_tolerance(t.tolerance);
-    io::parse_whole(t.contacts_per_pair, "--contacts-per-pair", 1, 8);
+    options.narrow.contacts_per_pair =
+        static_cast<std::uint32_t>(io::parse_whole(t.contacts_per_pair, "--contacts-per-pair", 1, 8));
     if (t.order != "sorted" && t.order != "any")
         throw io::InputError("--order is '" + t.order + "'; sorted and any are accepted");
     options.order = t.order == "any" ? Order::Any : Order::Sorted;

@@ -55,8 +55,11 @@ void add_narrow(Json& stats, const NarrowReport& report, const NarrowTimes& ms) 
                            {"pairs", bucket.pairs},
                            {"again", bucket.again}});
     stats["buckets"] = std::move(buckets);
-    stats["ms_narrow"] = {
-        {"upload", ms.upload}, {"buckets", ms.buckets}, {"routines", ms.routines}, {"gather", ms.gather}};
+    stats["ms_narrow"] = {{"upload", ms.upload},
+                          {"buckets", ms.buckets},
+                          {"routines", ms.routines},
+                          {"manifolds", ms.manifolds},
+                          {"gather", ms.gather}};
     stats["skipped"]["cells"] = report.cells_skipped;
 }
 
