@@ -1,39 +1,12 @@
 // Manifolds of contacts that are found already: see manifold.clh for the method.
 //
 //   find_manifolds   columns of contacts, bodies, shapes -> up to `wanted` points of each
-// Each contact is a loop's round of its own and looks at the classes of its two bodies itself: one kernel for all of them.
+// Each contact is a loop's round of its own and looks at the classes of its two bodies itself: one kernel for all of them,
+// but two boxes, which manifold_boxes.cl does many times faster.
 // Any work-group size. Defines: LANES; REAL_BITS: 32 or 64; PAIR_LANES=1; EXACT_FP32 (see real.clh).
 #include "narrow_phase/body.clh"
 #include "narrow_phase/manifold.clh"
-
-// Columns of contacts, as contact_gather of buckets.cl writes them.
-#define IN_A 0
-#define IN_B 1
-#define IN_DISTANCE 2
-#define IN_ERROR 3
-#define IN_NORMAL 4
-#define IN_POINT 7
-#define IN_REST 10
-
-// Columns of points: five of each.
-#define OUT_POINT 0
-#define OUT_DISTANCE 3
-#define OUT_ERROR 4
-#define OUT_COLUMNS 5
-
-typedef struct {
-    global const uint* words;
-    ulong stride;
-    uint with_rests;
-} Columns;
-
-inline real column_real(const Columns* c, uint column, uint rest, uint i) {
-    real x = as_float(c->words[column * c->stride + i]);
-#if REAL_BITS == 64
-    if (c->with_rests) x += (real)as_float(c->words[(IN_REST + rest) * c->stride + i]);
-#endif
-    return x;
-}
+#include "narrow_phase/manifold_columns.clh"
 
 inline v3 column_vector(const Columns* c, uint column, uint rest, uint i) {
     return v_of(column_real(c, column, rest, i), column_real(c, column + 1, rest + 1, i), column_real(c, column + 2, rest + 2, i));
@@ -53,15 +26,17 @@ inline void patch_body(global const BodyFrame* frame, global const NarrowShape* 
     body->corners = corners;
 }
 
-// Work-item i owns contacts [i per_item, (i + 1) per_item).
-kernel void find_manifolds(global const uint* restrict contacts, ulong stride, uint with_rests, uint count, uint per_item,
+// Work-item i owns contacts [i per_item, (i + 1) per_item) of the `listed` ones, or of all.
+kernel void find_manifolds(global const uint* restrict contacts, ulong stride, uint with_rests, global const uint* restrict list,
+                           uint listed, uint count, uint per_item,
                            global const BodyFrame* restrict bodies, global const NarrowShape* restrict shapes,
                            global const REAL_SCALAR* restrict vertices, global const NarrowFace* restrict faces,
                            global const uint* restrict corners, global const float* restrict margins, uint with_margins,
                            uint wanted, global REAL_SCALAR* restrict points, global uint* restrict features,
                            global uint* restrict counts, ulong out_stride) {
     Columns in = {contacts, stride, with_rests};
-    for (uint i = get_global_id(0) * per_item, end = min(count, i + per_item); i < end; ++i) {
+    for (uint at = get_global_id(0) * per_item, end = min(count, at + per_item); at < end; ++at) {
+        const uint i = listed ? list[at] : at;
         const uint row_a = contacts[IN_A * stride + i], row_b = contacts[IN_B * stride + i];
         PatchBody a, b;
         patch_body(bodies + row_a, shapes, vertices, faces, corners, &a);

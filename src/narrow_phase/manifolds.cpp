@@ -13,6 +13,7 @@
 namespace clinch::detail {
 namespace host {
 #include "cl/narrow_phase/manifold.clh"
+#include "cl/narrow_phase/manifold_boxes.clh"
 }  // namespace host
 
 namespace {
@@ -53,20 +54,56 @@ host::PatchBody patch_body(const Scene& scene, const NarrowShapes& shapes, std::
     return body;
 }
 
-host::Manifold manifold_of(const Scene& scene, const NarrowShapes& shapes, const HostAnswer& answer,
-                           std::uint32_t wanted) {
-    const Scene::Impl& s = scene.impl();
-    host::PatchBody a = patch_body(scene, shapes, answer.a), b = patch_body(scene, shapes, answer.b);
-    const Vec3 &p = s.position[answer.a], &q = s.position[answer.b];
-    host::Manifold m{};
+// A contact as both methods take it.
+template <class Manifold>
+Manifold manifold_of(const Scene::Impl& s, const HostAnswer& answer, std::uint32_t wanted) {
+    Manifold m{};
     m.normal = {answer.normal[0], answer.normal[1], answer.normal[2]};
     m.point = {answer.point[0], answer.point[1], answer.point[2]};
     m.distance = answer.distance;
     m.error = answer.error;
     m.limit = s.margin[answer.a] + s.margin[answer.b];
     m.wanted = wanted;
-    host::find_manifold(&a, &b, {q.x - p.x, q.y - p.y, q.z - p.z}, &m);
     return m;
+}
+
+/// The points of one contact.
+struct FewPoints {
+    ManifoldPoint points[most_points];
+    std::uint32_t count = 0;
+    void add(const host::v3& on_a, double distance, double error, std::uint32_t feature) {
+        points[count++] = {{on_a.x, on_a.y, on_a.z}, distance, error, feature};
+    }
+};
+
+FewPoints points_of_boxes(const Scene& scene, const NarrowShapes& shapes, const HostAnswer& answer,
+                          const host::v3& between, std::uint32_t wanted) {
+    const host::Side a = host_side(scene, shapes, answer.a), b = host_side(scene, shapes, answer.b);
+    auto m = manifold_of<host::BoxManifold>(scene.impl(), answer, wanted);
+    host::find_box_manifold(&a, &b, between, &m);
+    FewPoints out;
+    for (std::uint32_t k = 0; k < wanted; ++k) {
+        if (!m.valid[k]) continue;
+        const auto kind = static_cast<std::uint32_t>(m.kind[k]), of_a = static_cast<std::uint32_t>(m.of_a[k]),
+                   of_b = static_cast<std::uint32_t>(m.of_b[k]);
+        const std::uint32_t which = kind == 1 ? of_a : kind == 2 ? of_b : of_a << 15 | of_b;
+        out.add(m.on_a[k], m.along[k], m.off[k], kind == 0 ? 0 : kind << 30 | which);
+    }
+    return out;
+}
+
+FewPoints points_of(const Scene& scene, const NarrowShapes& shapes, const HostAnswer& answer, std::uint32_t wanted) {
+    const Scene::Impl& s = scene.impl();
+    const Vec3 &p = s.position[answer.a], &q = s.position[answer.b];
+    const host::v3 between{q.x - p.x, q.y - p.y, q.z - p.z};
+    host::PatchBody a = patch_body(scene, shapes, answer.a), b = patch_body(scene, shapes, answer.b);
+    if (a.kind == box_class && b.kind == box_class) return points_of_boxes(scene, shapes, answer, between, wanted);
+    auto m = manifold_of<host::Manifold>(s, answer, wanted);
+    host::find_manifold(&a, &b, between, &m);
+    FewPoints out;
+    for (std::uint32_t k = 0; k < m.count; ++k)
+        out.add(m.on_a[k], m.points[k].distance, m.points[k].error, m.points[k].feature);
+    return out;
 }
 
 }  // namespace
@@ -87,32 +124,57 @@ bool Manifolds::can(const NarrowShapes& shapes, unsigned bits) const {
     return true;
 }
 
-void Manifolds::find(const NarrowScene& scene, const Slots& slots, std::uint32_t count, bool with_rests, unsigned bits,
-                     std::uint32_t wanted, ManifoldPoints& out) {
-    const DeviceInfo& info = device_.info();
-    Kernel& kernel = kernels_[bits == 64 ? 1 : 0];
+Kernel& Manifolds::kernel(std::size_t part, unsigned bits) {
+    Kernel& kernel = kernels_[part][bits == 64 ? 1 : 0];
     if (!kernel)
-        kernel =
-            device_.kernel("narrow_phase/manifold", "find_manifolds", "-DPAIR_LANES=1" + number_defines(info, bits));
-    stride_ = std::max<std::uint64_t>(stride_, count);
+        kernel = device_.kernel(parts[part].module, parts[part].kernel,
+                                parts[part].defines + number_defines(device_.info(), bits));
+    return kernel;
+}
+
+// Contacts a work-item looks at.
+std::uint32_t Manifolds::per_item(std::uint32_t count) const {
+    const DeviceInfo& info = device_.info();
+    constexpr std::uint32_t block = Slots::block;
+    const std::uint32_t most_items = info.compute_units * (info.lanes > 1 ? 16u : 65536u);
+    return info.lanes > 1 ? ((count - 1) / most_items / block + 1) * block : (count - 1) / most_items + 1;
+}
+
+void Manifolds::find(const NarrowScene& scene, const Slots& slots, const ContactKinds& kinds, bool with_rests,
+                     unsigned bits, std::uint32_t wanted, ManifoldPoints& out) {
+    const auto boxes = static_cast<std::uint32_t>(kinds.boxes.size()),
+               others = static_cast<std::uint32_t>(kinds.others.size());
+    stride_ = std::max<std::uint64_t>(stride_, boxes + others);
     device_.reserve(points_, stride_ * wanted * point_columns * (bits / 8), "the points of manifolds");
     device_.reserve(features_, stride_ * wanted * sizeof(std::uint32_t), "the features of manifolds");
     device_.reserve(counts_, stride_ * sizeof(std::uint32_t), "the counts of manifolds' points");
     // What nobody reads may be any buffer.
     const Buffer& margins = scene.has_margins() ? scene.margins() : scene.classes();
     const bool faces = scene.faces(bits).handle() != nullptr;
-    const std::uint32_t most_items = info.compute_units * (info.lanes > 1 ? 16u : 65536u);
-    const std::uint32_t per_item = (count - 1) / most_items + 1, items = (count - 1) / per_item + 1;
-    kernel.args(slots.contacts(), slots.contact_stride(), with_rests ? 1u : 0u, count, per_item, scene.bodies(bits),
-                scene.shapes(bits), scene.vertices(bits), faces ? scene.faces(bits) : scene.classes(),
-                faces ? scene.corners(bits) : scene.classes(), margins, scene.has_margins() ? 1u : 0u, wanted, points_,
-                features_, counts_, stride_);
-    const std::size_t group = device_.group_size();
-    device_.launch(kernel, (items + group - 1) / group, group);
+    const std::uint32_t with_margins = scene.has_margins() ? 1 : 0, rests = with_rests ? 1 : 0;
+    const bool listed = boxes > 0 && others > 0;
+    const auto run = [&](std::size_t part, const std::vector<std::uint32_t>& list, const auto&... data) {
+        const auto count = static_cast<std::uint32_t>(list.size());
+        if (count == 0) return;
+        if (listed) {
+            device_.reserve(lists_[part], count * sizeof(std::uint32_t), "the numbers of contacts");
+            device_.write(lists_[part], list.data(), count * sizeof(std::uint32_t));
+        }
+        Kernel& find = kernel(part, bits);
+        const std::uint32_t each = per_item(count), items = (count - 1) / each + 1;
+        find.args(slots.contacts(), slots.contact_stride(), rests, listed ? lists_[part] : scene.classes(),
+                  listed ? 1u : 0u, count, each, scene.bodies(bits), scene.shapes(bits), data..., margins, with_margins,
+                  wanted, points_, features_, counts_, stride_);
+        const std::size_t group = device_.group_size();
+        device_.launch(find, (items + group - 1) / group, group);
+    };
+    run(0, kinds.boxes);
+    run(1, kinds.others, scene.vertices(bits), faces ? scene.faces(bits) : scene.classes(),
+        faces ? scene.corners(bits) : scene.classes());
     if (bits == 64)
-        read<double>(count, wanted, out);
+        read<double>(boxes + others, wanted, out);
     else
-        read<float>(count, wanted, out);
+        read<float>(boxes + others, wanted, out);
 }
 
 template <class Real>
@@ -142,22 +204,26 @@ void manifolds_on_host(const Scene& scene, const NarrowShapes& shapes, const std
     std::vector<std::size_t> hits;
     for (std::size_t i = 0; i < answers.size(); ++i)
         if (answers[i].hit) hits.push_back(i);
-    std::vector<host::Manifold> found(hits.size());
+    std::vector<FewPoints> found(hits.size());
     const auto end = static_cast<std::ptrdiff_t>(hits.size());
 #pragma omp parallel for schedule(dynamic, 64) if (hits.size() >= contacts_worth_threads)
     for (std::ptrdiff_t c = 0; c < end; ++c) {
         const auto i = static_cast<std::size_t>(c);
-        found[i] = manifold_of(scene, shapes, answers[hits[i]], wanted);
+        found[i] = points_of(scene, shapes, answers[hits[i]], wanted);
+        put_in_order(found[i].points, found[i].count);
     }
     lay_out(out, hits.size(), [&](std::size_t i) { return found[i].count; });
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-        const host::Manifold& m = found[i];
-        ManifoldPoint* const to = out.points.data() + out.firsts[i];
-        for (std::size_t k = 0; k < m.count; ++k)
-            to[k] = {
-                {m.on_a[k].x, m.on_a[k].y, m.on_a[k].z}, m.points[k].distance, m.points[k].error, m.points[k].feature};
-        put_in_order(to, m.count);
-    }
+    for (std::size_t i = 0; i < hits.size(); ++i)
+        std::copy_n(found[i].points, found[i].count, out.points.data() + out.firsts[i]);
+}
+
+ContactKinds kinds_of(const Scene& scene, const NarrowShapes& shapes, const std::uint32_t* a, const std::uint32_t* b,
+                      std::uint32_t count) {
+    const std::vector<std::uint32_t>& shape = scene.impl().shape;
+    const auto is_box = [&](std::uint32_t row) { return shapes.records()[shape[row]].kind == box_class; };
+    ContactKinds kinds;
+    for (std::uint32_t i = 0; i < count; ++i) (is_box(a[i]) && is_box(b[i]) ? kinds.boxes : kinds.others).push_back(i);
+    return kinds;
 }
 
 }  // namespace clinch::detail

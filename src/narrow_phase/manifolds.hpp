@@ -27,6 +27,13 @@ struct ManifoldPoints {
     std::vector<ManifoldPoint> points;
 };
 
+/// Which contacts are of two boxes, for which there is a kernel of their own, and which are not: by number.
+struct ContactKinds {
+    std::vector<std::uint32_t> boxes, others;
+};
+ContactKinds kinds_of(const Scene& scene, const NarrowShapes& shapes, const std::uint32_t* a, const std::uint32_t* b,
+                      std::uint32_t count);
+
 /// Finds manifolds on a device.
 class Manifolds {
 public:
@@ -34,18 +41,27 @@ public:
 
     /// Whether the device can do hulls such as these in 32 or 64 bits.
     bool can(const NarrowShapes& shapes, unsigned bits) const;
-    /// Up to `wanted` (2 to most_points) points of each of the `count` contacts that slots.gather() left on the device,
+    /// Up to `wanted` (2 to most_points) points of each of the contacts that slots.gather() left on the device,
     /// computed in 32 or 64 bits, for which the scene must be up to date. Waits.
-    void find(const NarrowScene& scene, const Slots& slots, std::uint32_t count, bool with_rests, unsigned bits,
+    void find(const NarrowScene& scene, const Slots& slots, const ContactKinds& kinds, bool with_rests, unsigned bits,
               std::uint32_t wanted, ManifoldPoints& out);
 
 private:
+    struct Part {
+        const char* module;
+        const char* kernel;
+        const char* defines;
+    };
+    static constexpr Part parts[] = {{"narrow_phase/manifold_boxes", "find_box_manifolds", ""},
+                                     {"narrow_phase/manifold", "find_manifolds", " -DPAIR_LANES=1"}};
+    Kernel& kernel(std::size_t part, unsigned bits);
+    std::uint32_t per_item(std::uint32_t count) const;
     template <class Real>
     void read(std::uint32_t count, std::uint32_t wanted, ManifoldPoints& out);
 
     Device& device_;
-    Kernel kernels_[2];  // for 32 and 64 bits
-    Buffer points_, features_, counts_;
+    Kernel kernels_[2][2];  // of each part, for 32 and 64 bits
+    Buffer lists_[2], points_, features_, counts_;
     std::uint64_t stride_ = 0;
 };
 

@@ -14,7 +14,7 @@ namespace clinch::detail {
 
 /// Classes of shapes that have routines, by number: the index of the alternative in clinch::Shape. A mesh has none yet.
 constexpr std::size_t narrow_classes = 7;
-constexpr std::uint8_t sphere_class = 0, plane_class = 5;
+constexpr std::uint8_t sphere_class = 0, box_class = 1, plane_class = 5;
 
 /// One cell. A's class is not above B's.
 struct MatrixRow {

@@ -205,7 +205,9 @@ const ManifoldPoints* NarrowPhase::Impl::points_of(const Scene& scene, const Gat
     const unsigned bits = level == Level::Exact || options.tolerance ? 64 : 32;
     if (manifolds->can(shapes, bits)) {
         on_device->update(scene, shapes, bits);
-        manifolds->find(*on_device, *slots, gathered.count, gathered.rests, bits, options.contacts_per_pair, points);
+        const ContactKinds kinds =
+            kinds_of(scene, shapes, gathered.words, gathered.words + gathered.stride, gathered.count);
+        manifolds->find(*on_device, *slots, kinds, gathered.rests, bits, options.contacts_per_pair, points);
     } else {
         manifolds_on_host(scene, shapes, answers_of(gathered), options.contacts_per_pair, points);
     }
