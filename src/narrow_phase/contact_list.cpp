@@ -50,6 +50,34 @@ Contact contact_of(const HostAnswer& answer) {
     return c;
 }
 
+std::size_t count_of(const DevicePoints& points, std::size_t i) {
+    return points.counts.as<std::uint32_t>()[i];
+}
+std::size_t count_of(const std::vector<FewPoints>& points, std::size_t i) {
+    return points[i].count;
+}
+FewPoints points_of(const DevicePoints& points, std::size_t i) {
+    return points.at(i);
+}
+const FewPoints& points_of(const std::vector<FewPoints>& points, std::size_t i) {
+    return points[i];
+}
+
+// From a's position to world space.
+void place(const Vec3& position, Contact& c) {
+    c.on_a = {position.x + c.on_a.x, position.y + c.on_a.y, position.z + c.on_a.z};
+    c.on_b = {c.on_a.x + c.distance * c.normal.x, c.on_a.y + c.distance * c.normal.y,
+              c.on_a.z + c.distance * c.normal.z};
+}
+
+// Numbers of vertices beyond what a name has room for come round again.
+void put_in_order(Contact* contacts, std::size_t count) {
+    const auto before = [](const Contact& p, const Contact& q) { return p.feature < q.feature; };
+    std::sort(contacts, contacts + count, before);
+    for (std::size_t i = 1; i < count; ++i)
+        if (contacts[i].feature <= contacts[i - 1].feature) contacts[i].feature = contacts[i - 1].feature + 1;
+}
+
 }  // namespace
 
 std::vector<HostAnswer> answers_of(const GatheredContacts& gathered) {
@@ -69,70 +97,100 @@ std::vector<HostAnswer> answers_of(const GatheredContacts& gathered) {
     return answers;
 }
 
-void ContactList::clear() {
-    contacts_.clear();
+Contact* ContactList::grow(std::size_t by) {
+    const std::size_t before = size_;
+    size_ += by;
+    if (contacts_.size() < size_) contacts_.resize(std::max(size_, contacts_.size() + contacts_.size() / 2));
+    return contacts_.data() + before;
 }
 
 template <class ContactAt>
-void ContactList::append_all(std::size_t count, const ContactAt& contact_at, const ManifoldPoints* manifolds) {
-    const std::size_t before = contacts_.size();
-    contacts_.resize(before + (manifolds ? manifolds->points.size() : count));
-    Contact* const to = contacts_.data() + before;
+void ContactList::append_each(const Scene& scene, std::size_t count, const ContactAt& contact_at) {
+    Contact* const to = grow(count);
+    const std::vector<Vec3>& position = scene.impl().position;
     const auto end = static_cast<std::ptrdiff_t>(count);
 #pragma omp parallel for schedule(static) if (count >= rows_worth_threads)
     for (std::ptrdiff_t i = 0; i < end; ++i) {
         const auto at = static_cast<std::size_t>(i);
         Contact c = contact_at(at);
-        if (manifolds == nullptr) {
-            to[at] = c;
-            continue;
-        }
-        for (std::size_t k = manifolds->firsts[at]; k < manifolds->firsts[at + 1]; ++k) {
-            const ManifoldPoint& point = manifolds->points[k];
+        place(position[c.a], c);
+        to[at] = c;
+    }
+}
+
+template <class ContactAt, class Points>
+void ContactList::append_points(const Scene& scene, std::size_t count, const ContactAt& contact_at,
+                                const Points& points) {
+    firsts_.resize(count);
+    std::size_t total = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        firsts_[i] = total;
+        total += count_of(points, i);
+    }
+    Contact* const list = grow(total);
+    const std::vector<Vec3>& position = scene.impl().position;
+    const auto end = static_cast<std::ptrdiff_t>(count);
+#pragma omp parallel for schedule(static) if (count >= rows_worth_threads)
+    for (std::ptrdiff_t i = 0; i < end; ++i) {
+        const auto at = static_cast<std::size_t>(i);
+        Contact c = contact_at(at);
+        const FewPoints few = points_of(points, at);
+        Contact* const to = list + firsts_[at];
+        for (std::size_t k = 0; k < few.count; ++k) {
+            const ManifoldPoint& point = few.points[k];
             c.feature = point.feature;
             c.on_a = {point.on_a[0], point.on_a[1], point.on_a[2]};
             c.distance = point.distance;
             c.error = point.error;
+            place(position[c.a], c);
             to[k] = c;
         }
+        put_in_order(to, few.count);
     }
 }
 
-void ContactList::append(const GatheredContacts& gathered, const ManifoldPoints* manifolds) {
+void ContactList::append(const Scene& scene, const GatheredContacts& gathered) {
     const Columns from(gathered);
-    append_all(
-        gathered.count, [&](std::size_t i) { return from.at(i); }, manifolds);
+    append_each(scene, gathered.count, [&](std::size_t i) { return from.at(i); });
 }
 
-void ContactList::append(const std::vector<HostAnswer>& answers, const ManifoldPoints* manifolds) {
+void ContactList::append(const Scene& scene, const GatheredContacts& gathered, const DevicePoints& points) {
+    const Columns from(gathered);
+    append_points(
+        scene, gathered.count, [&](std::size_t i) { return from.at(i); }, points);
+}
+
+void ContactList::append(const Scene& scene, const GatheredContacts& gathered, const std::vector<FewPoints>& points) {
+    const Columns from(gathered);
+    append_points(
+        scene, gathered.count, [&](std::size_t i) { return from.at(i); }, points);
+}
+
+void ContactList::append(const Scene& scene, const std::vector<HostAnswer>& answers,
+                         const std::vector<FewPoints>& points) {
     std::vector<std::size_t> hits;
     for (std::size_t i = 0; i < answers.size(); ++i)
         if (answers[i].hit) hits.push_back(i);
-    append_all(
-        hits.size(), [&](std::size_t i) { return contact_of(answers[hits[i]]); }, manifolds);
+    const auto contact_at = [&](std::size_t i) { return contact_of(answers[hits[i]]); };
+    if (points.empty())
+        append_each(scene, hits.size(), contact_at);
+    else
+        append_points(scene, hits.size(), contact_at, points);
 }
 
-void ContactList::finish(const Scene& scene, bool margins) {
-    const Scene::Impl& s = scene.impl();
-    if (margins)
-        contacts_.erase(
-            std::remove_if(contacts_.begin(), contacts_.end(),
-                           [&](const Contact& c) { return c.distance - c.error > s.margin[c.a] + s.margin[c.b]; }),
-            contacts_.end());
-    const auto end = static_cast<std::ptrdiff_t>(contacts_.size());
-#pragma omp parallel for schedule(static) if (contacts_.size() >= rows_worth_threads)
-    for (std::ptrdiff_t i = 0; i < end; ++i) {
-        Contact& c = contacts_[static_cast<std::size_t>(i)];
-        const Vec3& p = s.position[c.a];
-        c.on_a = {p.x + c.on_a.x, p.y + c.on_a.y, p.z + c.on_a.z};
-        c.on_b = {c.on_a.x + c.distance * c.normal.x, c.on_a.y + c.distance * c.normal.y,
-                  c.on_a.z + c.distance * c.normal.z};
-    }
+void ContactList::drop_beyond_margins(const Scene& scene) {
+    const std::vector<double>& margin = scene.impl().margin;
+    Contact* const begin = contacts_.data();
+    size_ = static_cast<std::size_t>(
+        std::remove_if(begin, begin + size_,
+                       [&](const Contact& c) { return c.distance - c.error > margin[c.a] + margin[c.b]; }) -
+        begin);
 }
 
 std::uint64_t ContactList::count_above(double tolerance) const {
+    const View<const Contact> all = view();
     return static_cast<std::uint64_t>(
-        std::count_if(contacts_.begin(), contacts_.end(), [&](const Contact& c) { return c.error > tolerance; }));
+        std::count_if(all.begin(), all.end(), [&](const Contact& c) { return c.error > tolerance; }));
 }
 
 }  // namespace clinch::detail

@@ -21,24 +21,32 @@ struct GatheredContacts {
 /// The same as answers, all of them hits.
 std::vector<HostAnswer> answers_of(const GatheredContacts& gathered);
 
-/// Grows by chunks; made into Contacts at the end.
+/// Grows by chunks. In world space.
 class ContactList {
 public:
-    void clear();
-    /// Appends the contacts that were gathered: one each, or, with manifolds, their points.
-    void append(const GatheredContacts& gathered, const ManifoldPoints* manifolds);
-    /// Appends those that are hits; `manifolds` are those of the hits.
-    void append(const std::vector<HostAnswer>& answers, const ManifoldPoints* manifolds);
-    std::size_t size() const noexcept { return contacts_.size(); }
-    /// Takes out those farther apart than the margins of their bodies and adds positions: now in world space.
-    void finish(const Scene& scene, bool margins);
-    View<const Contact> view() const noexcept { return contacts_; }
+    void clear() noexcept { size_ = 0; }
+    /// Appends the contacts that were gathered.
+    void append(const Scene& scene, const GatheredContacts& gathered);
+    /// Appends their points instead, those of each by ascending features of which no two are equal.
+    void append(const Scene& scene, const GatheredContacts& gathered, const DevicePoints& points);
+    void append(const Scene& scene, const GatheredContacts& gathered, const std::vector<FewPoints>& points);
+    /// Appends those answers that are hits, or, if there are any, the hits' points.
+    void append(const Scene& scene, const std::vector<HostAnswer>& answers, const std::vector<FewPoints>& points);
+    std::size_t size() const noexcept { return size_; }
+    /// Takes out those farther apart than the margins of their bodies.
+    void drop_beyond_margins(const Scene& scene);
+    View<const Contact> view() const noexcept { return {contacts_.data(), size_}; }
     std::uint64_t count_above(double tolerance) const;
 
 private:
+    Contact* grow(std::size_t by);
     template <class ContactAt>
-    void append_all(std::size_t count, const ContactAt& contact_at, const ManifoldPoints* manifolds);
-    std::vector<Contact> contacts_;  // on_a relative to a's position until finish()
+    void append_each(const Scene& scene, std::size_t count, const ContactAt& contact_at);
+    template <class ContactAt, class Points>
+    void append_points(const Scene& scene, std::size_t count, const ContactAt& contact_at, const Points& points);
+    std::vector<Contact> contacts_;  // as long as the longest list was: what is behind size_ is old
+    std::size_t size_ = 0;
+    std::vector<std::size_t> firsts_;  // of each contact its first point
 };
 
 }  // namespace clinch::detail

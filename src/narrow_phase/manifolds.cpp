@@ -21,27 +21,6 @@ namespace {
 constexpr std::size_t contacts_worth_threads = 1024;
 constexpr std::size_t point_columns = 5;  // OUT_COLUMNS of cl/narrow_phase/manifold.cl
 
-// Numbers of vertices beyond what a name has room for come round again.
-void put_in_order(ManifoldPoint* points, std::size_t count) {
-    std::sort(points, points + count,
-              [](const ManifoldPoint& p, const ManifoldPoint& q) { return p.feature < q.feature; });
-    for (std::size_t i = 1; i < count; ++i)
-        if (points[i].feature <= points[i - 1].feature) points[i].feature = points[i - 1].feature + 1;
-}
-
-// Makes room for the points of contacts that have so many each.
-template <class CountOf>
-void lay_out(ManifoldPoints& out, std::size_t contacts, const CountOf& count_of) {
-    out.firsts.resize(contacts + 1);
-    std::uint32_t total = 0;
-    for (std::size_t i = 0; i < contacts; ++i) {
-        out.firsts[i] = total;
-        total += count_of(i);
-    }
-    out.firsts[contacts] = total;
-    out.points.resize(total);
-}
-
 host::PatchBody patch_body(const Scene& scene, const NarrowShapes& shapes, std::uint32_t row) {
     const NarrowShape64& shape = shapes.records()[scene.impl().shape[row]];
     host::PatchBody body{};
@@ -67,14 +46,9 @@ Manifold manifold_of(const Scene::Impl& s, const HostAnswer& answer, std::uint32
     return m;
 }
 
-/// The points of one contact.
-struct FewPoints {
-    ManifoldPoint points[most_points];
-    std::uint32_t count = 0;
-    void add(const host::v3& on_a, double distance, double error, std::uint32_t feature) {
-        points[count++] = {{on_a.x, on_a.y, on_a.z}, distance, error, feature};
-    }
-};
+void add_point(FewPoints& to, const host::v3& on_a, double distance, double error, std::uint32_t feature) {
+    to.points[to.count++] = {{on_a.x, on_a.y, on_a.z}, distance, error, feature};
+}
 
 FewPoints points_of_boxes(const Scene& scene, const NarrowShapes& shapes, const HostAnswer& answer,
                           const host::v3& between, std::uint32_t wanted) {
@@ -87,7 +61,7 @@ FewPoints points_of_boxes(const Scene& scene, const NarrowShapes& shapes, const 
         const auto kind = static_cast<std::uint32_t>(m.kind[k]), of_a = static_cast<std::uint32_t>(m.of_a[k]),
                    of_b = static_cast<std::uint32_t>(m.of_b[k]);
         const std::uint32_t which = kind == 1 ? of_a : kind == 2 ? of_b : of_a << 15 | of_b;
-        out.add(m.on_a[k], m.along[k], m.off[k], kind == 0 ? 0 : kind << 30 | which);
+        add_point(out, m.on_a[k], m.along[k], m.off[k], kind == 0 ? 0 : kind << 30 | which);
     }
     return out;
 }
@@ -102,7 +76,7 @@ FewPoints points_of(const Scene& scene, const NarrowShapes& shapes, const HostAn
     host::find_manifold(&a, &b, between, &m);
     FewPoints out;
     for (std::uint32_t k = 0; k < m.count; ++k)
-        out.add(m.on_a[k], m.points[k].distance, m.points[k].error, m.points[k].feature);
+        add_point(out, m.on_a[k], m.points[k].distance, m.points[k].error, m.points[k].feature);
     return out;
 }
 
@@ -141,7 +115,7 @@ std::uint32_t Manifolds::per_item(std::uint32_t count) const {
 }
 
 void Manifolds::find(const NarrowScene& scene, const Slots& slots, const ContactKinds& kinds, bool with_rests,
-                     unsigned bits, std::uint32_t wanted, ManifoldPoints& out) {
+                     unsigned bits, std::uint32_t wanted, DevicePoints& out) {
     const auto boxes = static_cast<std::uint32_t>(kinds.boxes.size()),
                others = static_cast<std::uint32_t>(kinds.others.size());
     stride_ = std::max<std::uint64_t>(stride_, boxes + others);
@@ -171,36 +145,35 @@ void Manifolds::find(const NarrowScene& scene, const Slots& slots, const Contact
     run(0, kinds.boxes);
     run(1, kinds.others, scene.vertices(bits), faces ? scene.faces(bits) : scene.classes(),
         faces ? scene.corners(bits) : scene.classes());
-    if (bits == 64)
-        read<double>(boxes + others, wanted, out);
-    else
-        read<float>(boxes + others, wanted, out);
+    out.counts = device_.map(counts_, (boxes + others) * sizeof(std::uint32_t));
+    out.points = device_.map(points_, stride_ * wanted * point_columns * (bits / 8));
+    out.features = device_.map(features_, stride_ * wanted * sizeof(std::uint32_t));
+    out.stride = stride_;
+    out.bits = bits;
 }
 
 template <class Real>
-void Manifolds::read(std::uint32_t count, std::uint32_t wanted, ManifoldPoints& out) {
-    const Mapping counts = device_.map(counts_, count * sizeof(std::uint32_t));
-    const Mapping points = device_.map(points_, stride_ * wanted * point_columns * sizeof(Real));
-    const Mapping features = device_.map(features_, stride_ * wanted * sizeof(std::uint32_t));
-    const auto* number = counts.as<std::uint32_t>();
-    lay_out(out, count, [&](std::size_t i) { return number[i]; });
-    const auto end = static_cast<std::ptrdiff_t>(count);
-#pragma omp parallel for schedule(static) if (count >= contacts_worth_threads)
-    for (std::ptrdiff_t c = 0; c < end; ++c) {
-        const auto i = static_cast<std::size_t>(c);
-        ManifoldPoint* const to = out.points.data() + out.firsts[i];
-        for (std::size_t k = 0; k < number[i]; ++k) {
-            const Real* const from = points.as<Real>() + k * point_columns * stride_ + i;
-            const auto column = [&](std::size_t d) { return static_cast<double>(from[d * stride_]); };
-            to[k] = {
-                {column(0), column(1), column(2)}, column(3), column(4), features.as<std::uint32_t>()[k * stride_ + i]};
-        }
-        put_in_order(to, number[i]);
+void DevicePoints::read(std::size_t i, FewPoints& out) const {
+    out.count = counts.as<std::uint32_t>()[i];
+    for (std::size_t k = 0; k < out.count; ++k) {
+        const Real* const from = points.as<Real>() + k * point_columns * stride + i;
+        const auto column = [&](std::size_t d) { return static_cast<double>(from[d * stride]); };
+        out.points[k] = {
+            {column(0), column(1), column(2)}, column(3), column(4), features.as<std::uint32_t>()[k * stride + i]};
     }
 }
 
-void manifolds_on_host(const Scene& scene, const NarrowShapes& shapes, const std::vector<HostAnswer>& answers,
-                       std::uint32_t wanted, ManifoldPoints& out) {
+FewPoints DevicePoints::at(std::size_t i) const {
+    FewPoints out;
+    if (bits == 64)
+        read<double>(i, out);
+    else
+        read<float>(i, out);
+    return out;
+}
+
+std::vector<FewPoints> manifolds_on_host(const Scene& scene, const NarrowShapes& shapes,
+                                         const std::vector<HostAnswer>& answers, std::uint32_t wanted) {
     std::vector<std::size_t> hits;
     for (std::size_t i = 0; i < answers.size(); ++i)
         if (answers[i].hit) hits.push_back(i);
@@ -210,11 +183,8 @@ void manifolds_on_host(const Scene& scene, const NarrowShapes& shapes, const std
     for (std::ptrdiff_t c = 0; c < end; ++c) {
         const auto i = static_cast<std::size_t>(c);
         found[i] = points_of(scene, shapes, answers[hits[i]], wanted);
-        put_in_order(found[i].points, found[i].count);
     }
-    lay_out(out, hits.size(), [&](std::size_t i) { return found[i].count; });
-    for (std::size_t i = 0; i < hits.size(); ++i)
-        std::copy_n(found[i].points, found[i].count, out.points.data() + out.firsts[i]);
+    return found;
 }
 
 ContactKinds kinds_of(const Scene& scene, const NarrowShapes& shapes, const std::uint32_t* a, const std::uint32_t* b,

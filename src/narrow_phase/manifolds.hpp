@@ -21,10 +21,24 @@ struct ManifoldPoint {
     std::uint32_t feature;
 };
 
-/// The points of several contacts, one contact after the other, each by ascending features of which no two are equal.
-struct ManifoldPoints {
-    std::vector<std::uint32_t> firsts;  ///< of each contact its first point; one more at the end
-    std::vector<ManifoldPoint> points;
+/// The points of one contact.
+struct FewPoints {
+    ManifoldPoint points[most_points];
+    std::uint32_t count = 0;
+};
+
+/// The points of contacts as a device left them, readable on the host while this lives.
+struct DevicePoints {
+    Mapping counts, features, points;
+    std::uint64_t stride = 0;
+    unsigned bits = 32;
+
+    /// Those of contact i.
+    FewPoints at(std::size_t i) const;
+
+private:
+    template <class Real>
+    void read(std::size_t i, FewPoints& out) const;
 };
 
 /// Which contacts are of two boxes, for which there is a kernel of their own, and which are not: by number.
@@ -44,7 +58,7 @@ public:
     /// Up to `wanted` (2 to most_points) points of each of the contacts that slots.gather() left on the device,
     /// computed in 32 or 64 bits, for which the scene must be up to date. Waits.
     void find(const NarrowScene& scene, const Slots& slots, const ContactKinds& kinds, bool with_rests, unsigned bits,
-              std::uint32_t wanted, ManifoldPoints& out);
+              std::uint32_t wanted, DevicePoints& out);
 
 private:
     struct Part {
@@ -56,8 +70,6 @@ private:
                                      {"narrow_phase/manifold", "find_manifolds", " -DPAIR_LANES=1"}};
     Kernel& kernel(std::size_t part, unsigned bits);
     std::uint32_t per_item(std::uint32_t count) const;
-    template <class Real>
-    void read(std::uint32_t count, std::uint32_t wanted, ManifoldPoints& out);
 
     Device& device_;
     Kernel kernels_[2][2];  // of each part, for 32 and 64 bits
@@ -65,8 +77,8 @@ private:
     std::uint64_t stride_ = 0;
 };
 
-/// The same on the host, in float64, of those answers that are hits.
-void manifolds_on_host(const Scene& scene, const NarrowShapes& shapes, const std::vector<HostAnswer>& answers,
-                       std::uint32_t wanted, ManifoldPoints& out);
+/// The same on the host, in float64, of those answers that are hits, in their order.
+std::vector<FewPoints> manifolds_on_host(const Scene& scene, const NarrowShapes& shapes,
+                                         const std::vector<HostAnswer>& answers, std::uint32_t wanted);
 
 }  // namespace clinch::detail

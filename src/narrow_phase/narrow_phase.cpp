@@ -58,7 +58,6 @@ struct NarrowPhase::Impl {
     std::unique_ptr<NarrowScene> on_device;
     std::unique_ptr<Slots> slots;
     std::unique_ptr<Manifolds> manifolds;
-    ManifoldPoints points;
     std::array<std::array<Kernel, 2>, 32> kernels;  // of a bucket: in 32 and 64 bits
     ContactList contacts;
     NarrowReport report;
@@ -77,7 +76,7 @@ struct NarrowPhase::Impl {
     void run_on_host(const Scene& scene, View<const Pair> pairs, const BucketSlice& slice);
     void gather(const Scene& scene);
     bool may_have_points() const;
-    const ManifoldPoints* points_of(const Scene& scene, const GatheredContacts& gathered);
+    void append_points(const Scene& scene, const GatheredContacts& gathered);
     Kernel& kernel(std::size_t k, unsigned bits);
     bool in_float32(const MatrixRow& row) const;
     Device& device() const { return context.open(context.primary()); }
@@ -114,7 +113,7 @@ void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs) {
         throw;
     }
     const Stopwatch finish;
-    contacts.finish(scene, on_device && on_device->has_margins());
+    if (on_device && on_device->has_margins()) contacts.drop_beyond_margins(scene);
     report.ms.gather += finish.ms();
     report.contacts = contacts.size();
     if (options.tolerance) report.tolerance_missed = contacts.count_above(*options.tolerance);
@@ -138,9 +137,10 @@ void NarrowPhase::Impl::find_on_host(const Scene& scene, View<const Pair> pairs)
     for (std::size_t first = 0; first < pairs.size(); first += Slots::chunk_pairs) {
         const std::vector<HostAnswer> answers =
             touch_on_host(scene, shapes, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)});
-        const bool with_points = options.contacts_per_pair > 1;
-        if (with_points) manifolds_on_host(scene, shapes, answers, options.contacts_per_pair, points);
-        contacts.append(answers, with_points ? &points : nullptr);
+        std::vector<FewPoints> points;
+        if (options.contacts_per_pair > 1)
+            points = manifolds_on_host(scene, shapes, answers, options.contacts_per_pair);
+        contacts.append(scene, answers, points);
     }
     report.ms.routines = watch.ms();
 }
@@ -174,21 +174,20 @@ void NarrowPhase::Impl::do_chunk(const Scene& scene, View<const Pair> pairs) {
 
 void NarrowPhase::Impl::gather(const Scene& scene) {
     const Stopwatch watch;
+    const double manifolds_before = report.ms.manifolds;
     const bool rests = level != Level::Fast;
     const std::uint32_t count = slots->gather();
-    double in_manifolds = 0.0;
     if (count > 0) {
         const std::size_t columns = 2 + answer_columns + (rests ? rest_columns : 0);
         const Mapping mapping =
             device().map(slots->contacts(), columns * slots->contact_stride() * sizeof(std::uint32_t));
         const GatheredContacts gathered{mapping.as<std::uint32_t>(), slots->contact_stride(), count, rests};
-        const Stopwatch manifold;
-        const ManifoldPoints* const found = may_have_points() ? points_of(scene, gathered) : nullptr;
-        in_manifolds = manifold.ms();
-        contacts.append(gathered, found);
+        if (may_have_points())
+            append_points(scene, gathered);
+        else
+            contacts.append(scene, gathered);
     }
-    report.ms.manifolds += in_manifolds;
-    report.ms.gather += watch.ms() - in_manifolds;
+    report.ms.gather += watch.ms() - (report.ms.manifolds - manifolds_before);
 }
 
 // A sphere touches in one point.
@@ -200,18 +199,24 @@ bool NarrowPhase::Impl::may_have_points() const {
 }
 
 // The manifolds of what slots.gather() left on the device.
-const ManifoldPoints* NarrowPhase::Impl::points_of(const Scene& scene, const GatheredContacts& gathered) {
+void NarrowPhase::Impl::append_points(const Scene& scene, const GatheredContacts& gathered) {
+    const Stopwatch watch;
     if (!manifolds) manifolds = std::make_unique<Manifolds>(device());
+    const std::uint32_t wanted = options.contacts_per_pair;
     const unsigned bits = level == Level::Exact || options.tolerance ? 64 : 32;
-    if (manifolds->can(shapes, bits)) {
-        on_device->update(scene, shapes, bits);
-        const ContactKinds kinds =
-            kinds_of(scene, shapes, gathered.words, gathered.words + gathered.stride, gathered.count);
-        manifolds->find(*on_device, *slots, kinds, gathered.rests, bits, options.contacts_per_pair, points);
-    } else {
-        manifolds_on_host(scene, shapes, answers_of(gathered), options.contacts_per_pair, points);
+    if (!manifolds->can(shapes, bits)) {
+        const std::vector<FewPoints> points = manifolds_on_host(scene, shapes, answers_of(gathered), wanted);
+        report.ms.manifolds += watch.ms();
+        contacts.append(scene, gathered, points);
+        return;
     }
-    return &points;
+    on_device->update(scene, shapes, bits);
+    const ContactKinds kinds =
+        kinds_of(scene, shapes, gathered.words, gathered.words + gathered.stride, gathered.count);
+    DevicePoints points;
+    manifolds->find(*on_device, *slots, kinds, gathered.rests, bits, wanted, points);
+    report.ms.manifolds += watch.ms();
+    contacts.append(scene, gathered, points);
 }
 
 // Whether the device is asked in float32 first.
