@@ -86,12 +86,12 @@ kernel void contact_count(global const uint* restrict hits, global const uint* r
     counts[run] = found;
 }
 
-// Columns of contacts, each out_stride long: a, b, then the COLUMNS of answers, then, `with_rests`, the RESTS; those of float32
-// answers are 0.
+// Columns of contacts, each out_stride long: a, b, then, `with_answers`, the COLUMNS of answers, then, `with_rests`, the RESTS;
+// those of float32 answers are 0.
 kernel void contact_gather(global const uint2* restrict pairs, global const uint* restrict hits,
                            global const uint* restrict slot_of, uint n, uint per_run, uint runs,
-                           global const uint* restrict offsets, global const uint* restrict slots, ulong stride, uint with_rests,
-                           global uint* restrict out, ulong out_stride) {
+                           global const uint* restrict offsets, global const uint* restrict slots, ulong stride, uint with_answers,
+                           uint with_rests, global uint* restrict out, ulong out_stride) {
     uint run = get_global_id(0);
     if (run >= runs) return;
     uint to = offsets[run];
@@ -100,8 +100,8 @@ kernel void contact_gather(global const uint2* restrict pairs, global const uint
         if ((hits[slot] & HIT) == 0) continue;
         out[to] = pairs[i].x;
         out[out_stride + to] = pairs[i].y;
-        for (uint c = 0; c < COLUMNS; ++c) out[(2 + c) * out_stride + to] = slots[c * stride + slot];
-        if (with_rests)
+        for (uint c = 0; with_answers && c < COLUMNS; ++c) out[(2 + c) * out_stride + to] = slots[c * stride + slot];
+        if (with_answers && with_rests)
             for (uint c = COLUMNS; c < COLUMNS + RESTS; ++c)
                 out[(2 + c) * out_stride + to] = hits[slot] & FLOAT64 ? slots[c * stride + slot] : 0;
         ++to;

@@ -62,7 +62,7 @@ struct NarrowReport {
     std::uint64_t peak_device_bytes = 0;
 };
 
-/// Finds the contacts of candidate pairs. Keeps what it sent and its buffers between calls.
+/// Finds the contacts of candidate pairs, or which of them touch. Keeps what it sent and its buffers between calls.
 class NarrowPhase {
 public:
     /// Options out of their range are InvalidArgument. `context` must outlive this object. Builds nothing yet.
@@ -76,6 +76,12 @@ public:
     /// pair of a body that is not there or rejected, of two planes, or with a mesh, is InvalidArgument. Valid until the
     /// next call or the end of this object. Throws Error; then there is no result.
     View<const Contact> find(const Scene& scene, View<const Pair> pairs);
+
+    /// Only which of `pairs` touch, or are within the margins of the two bodies: those of which find() has contacts,
+    /// for less, as no depth, normal or point is computed; of pairs that lie within their error of the margins find()
+    /// may have one and this not, or the other way round, unless both are sure. Otherwise as find(); the pairs, in
+    /// order.
+    View<const Pair> touching(const Scene& scene, View<const Pair> pairs);
 
     const NarrowReport& report() const noexcept;
 

@@ -58,11 +58,14 @@ struct NarrowPhase::Impl {
     std::unique_ptr<NarrowScene> on_device;
     std::unique_ptr<Slots> slots;
     std::unique_ptr<Manifolds> manifolds;
-    std::array<std::array<Kernel, 2>, 32> kernels;  // of a bucket: in 32 and 64 bits
+    // Of a bucket, in 32 and 64 bits: for contacts, and for only which pairs touch.
+    std::array<std::array<std::array<Kernel, 2>, 2>, 32> kernels;
+    bool only_pairs = false;  // what the call that is under way asks for
     ContactList contacts;
+    std::vector<Pair> touching;
     NarrowReport report;
 
-    void find(const Scene& scene, View<const Pair> pairs);
+    void find(const Scene& scene, View<const Pair> pairs, bool touching_only);
     bool worth_a_device(std::size_t pairs) const;
     void find_on_host(const Scene& scene, View<const Pair> pairs);
     void find_on_device(const Scene& scene, View<const Pair> pairs);
@@ -71,6 +74,7 @@ struct NarrowPhase::Impl {
     void run(std::size_t k, const BucketSlice& slice, unsigned bits);
     void run_float64(const Scene& scene, std::size_t k, const BucketSlice& slice) {
         on_device->update(scene, shapes, 64);
+        slots->has_float64();
         run(k, slice, 64);
     }
     void run_on_host(const Scene& scene, View<const Pair> pairs, const BucketSlice& slice);
@@ -92,9 +96,11 @@ bool NarrowPhase::Impl::worth_a_device(std::size_t pairs) const {
     return context.infos[context.primary()].fp64 || level != Level::Exact;
 }
 
-void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs) {
+void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs, bool touching_only) {
     const Stopwatch total;
+    only_pairs = touching_only;
     contacts.clear();
+    touching.clear();
     report = NarrowReport{};
     report.pairs = pairs.size();
     for (const MatrixRow& row : matrix()) report.buckets.push_back({classes_text(row), row.module, 0, 0});
@@ -109,13 +115,14 @@ void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs) {
             find_on_host(scene, pairs);
     } catch (...) {
         contacts.clear();
+        touching.clear();
         if (on_device) on_device->forget();
         throw;
     }
     const Stopwatch finish;
     if (on_device && on_device->has_margins()) contacts.drop_beyond_margins(scene);
     report.ms.gather += finish.ms();
-    report.contacts = contacts.size();
+    report.contacts = only_pairs ? touching.size() : contacts.size();
     if (options.tolerance) report.tolerance_missed = contacts.count_above(*options.tolerance);
     report.cells_skipped = static_cast<std::uint64_t>(std::count_if(
         report.buckets.begin(), report.buckets.end(), [](const BucketReport& bucket) { return bucket.pairs == 0; }));
@@ -137,6 +144,11 @@ void NarrowPhase::Impl::find_on_host(const Scene& scene, View<const Pair> pairs)
     for (std::size_t first = 0; first < pairs.size(); first += Slots::chunk_pairs) {
         const std::vector<HostAnswer> answers =
             touch_on_host(scene, shapes, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)});
+        if (only_pairs) {
+            for (const HostAnswer& answer : answers)
+                if (answer.hit) touching.push_back({answer.a, answer.b});
+            continue;
+        }
         std::vector<FewPoints> points;
         if (options.contacts_per_pair > 1)
             points = manifolds_on_host(scene, shapes, answers, options.contacts_per_pair);
@@ -175,14 +187,15 @@ void NarrowPhase::Impl::do_chunk(const Scene& scene, View<const Pair> pairs) {
 void NarrowPhase::Impl::gather(const Scene& scene) {
     const Stopwatch watch;
     const double manifolds_before = report.ms.manifolds;
-    const bool rests = level != Level::Fast;
-    const std::uint32_t count = slots->gather();
+    const std::uint32_t count = slots->gather(only_pairs);
     if (count > 0) {
-        const std::size_t columns = 2 + answer_columns + (rests ? rest_columns : 0);
+        const std::uint64_t stride = slots->contact_stride();
         const Mapping mapping =
-            device().map(slots->contacts(), columns * slots->contact_stride() * sizeof(std::uint32_t));
-        const GatheredContacts gathered{mapping.as<std::uint32_t>(), slots->contact_stride(), count, rests};
-        if (may_have_points())
+            device().map(slots->contacts(), slots->gathered_columns(only_pairs) * stride * sizeof(std::uint32_t));
+        const GatheredContacts gathered{mapping.as<std::uint32_t>(), stride, count, slots->rests()};
+        if (only_pairs)
+            for (std::size_t i = 0; i < count; ++i) touching.push_back({gathered.words[i], gathered.words[stride + i]});
+        else if (may_have_points())
             append_points(scene, gathered);
         else
             contacts.append(scene, gathered);
@@ -252,11 +265,11 @@ void NarrowPhase::Impl::do_bucket(const Scene& scene, View<const Pair> pairs, st
 }
 
 Kernel& NarrowPhase::Impl::kernel(std::size_t k, unsigned bits) {
-    Kernel& kernel = kernels[k][bits == 64 ? 1 : 0];
+    Kernel& kernel = kernels[k][bits == 64 ? 1 : 0][only_pairs ? 1 : 0];
     if (kernel) return kernel;
     const MatrixRow& row = matrix()[k];
     const std::string defines = std::string(row.defines) + number_defines(context.infos[context.primary()], bits) +
-                                (row.lanes ? "" : " -DPAIR_LANES=1");
+                                (row.lanes ? "" : " -DPAIR_LANES=1") + (only_pairs ? " -DONLY_TOUCHING" : "");
     kernel = device().kernel(row.module, "touch_pairs", defines);
     return kernel;
 }
@@ -271,8 +284,8 @@ void NarrowPhase::Impl::run(std::size_t k, const BucketSlice& slice, unsigned bi
     // What nobody reads may be any buffer.
     const bool with_margins = on_device->has_margins();
     const Buffer& margins = with_margins ? on_device->margins() : on_device->classes();
-    const float tolerance = options.tolerance ? static_cast<float>(std::min(*options.tolerance, 3e38))
-                                              : std::numeric_limits<float>::infinity();
+    const float tolerance = options.tolerance && !only_pairs ? static_cast<float>(std::min(*options.tolerance, 3e38))
+                                                             : std::numeric_limits<float>::infinity();
     Kernel& touch = kernel(k, bits);
     touch.args(slots->pairs(), *slice.numbers, slice.listed ? 1u : 0u, slice.first, slice.count, per_item,
                on_device->bodies(bits), on_device->shapes(bits), on_device->vertices(bits), margins,
@@ -295,8 +308,13 @@ NarrowPhase::NarrowPhase(NarrowPhase&& other) noexcept = default;
 NarrowPhase& NarrowPhase::operator=(NarrowPhase&& other) noexcept = default;
 
 View<const Contact> NarrowPhase::find(const Scene& scene, View<const Pair> pairs) {
-    impl_->find(scene, pairs);
+    impl_->find(scene, pairs, false);
     return impl_->contacts.view();
+}
+
+View<const Pair> NarrowPhase::touching(const Scene& scene, View<const Pair> pairs) {
+    impl_->find(scene, pairs, true);
+    return impl_->touching;
 }
 
 const NarrowReport& NarrowPhase::report() const noexcept {

@@ -31,6 +31,7 @@ std::uint32_t Slots::runs_for(std::uint32_t count) const {
 void Slots::group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_t bodies, bool with_rests) {
     n_ = static_cast<std::uint32_t>(pairs.size());
     with_rests_ = with_rests;
+    float64_ = false;
     if (!keys_kernel_) {
         keys_kernel_ = device_.kernel(module, "bucket_keys");
         slots_kernel_ = device_.kernel(module, "bucket_slots");
@@ -123,6 +124,7 @@ void Slots::put(const BucketSlice& slice, const std::vector<HostAnswer>& answers
     for (std::size_t i = 0; i < hits.size(); ++i)
         hits[i] = (answers[i].hit ? hit_bit : 0) | (with_rests_ ? float64_bit : 0);
     device_.write(hits_, hits.data(), hits.size() * sizeof hits[0], slice.first_slot * sizeof hits[0]);
+    float64_ = float64_ || with_rests_;
     std::vector<float> column(slice.count), rest(slice.count);
     const auto put = [&](std::size_t c, std::size_t r, auto value) {
         for (std::size_t i = 0; i < column.size(); ++i) {
@@ -155,7 +157,7 @@ std::vector<std::uint32_t> Slots::numbers(const BucketSlice& slice) {
     return out;
 }
 
-std::uint32_t Slots::gather() {
+std::uint32_t Slots::gather(bool only_pairs) {
     if (!count_kernel_) {
         count_kernel_ = device_.kernel(module, "contact_count");
         gather_kernel_ = device_.kernel(module, "contact_gather");
@@ -169,11 +171,9 @@ std::uint32_t Slots::gather() {
     const std::uint32_t count = scan_.total();
     if (count == 0) return 0;
     contact_stride_ = std::max<std::uint64_t>(contact_stride_, count);
-    device_.reserve(contacts_,
-                    contact_stride_ * (2 + answer_columns + (with_rests_ ? rest_columns : 0)) * sizeof(std::uint32_t),
-                    "contacts");
+    device_.reserve(contacts_, contact_stride_ * gathered_columns(only_pairs) * sizeof(std::uint32_t), "contacts");
     device_.launch(gather_kernel_.args(pairs_, hits_, slot_of_, n_, per_run, runs, run_offsets_, answers_, stride_,
-                                       with_rests_ ? 1u : 0u, contacts_, contact_stride_),
+                                       only_pairs ? 0u : 1u, float64_ ? 1u : 0u, contacts_, contact_stride_),
                    groups, group);
     return count;
 }

@@ -67,9 +67,15 @@ public:
     const Buffer& hits() const { return hits_; }
     std::uint64_t stride() const { return stride_; }
 
-    /// Gathers the contacts into contacts(): a, b, answer_columns, and, with rests, rest_columns, each
-    /// contact_stride() long. Returns how many there are. Waits.
-    std::uint32_t gather();
+    /// Told that answers of this chunk are in float64.
+    void has_float64() noexcept { float64_ = true; }
+    /// Gathers the contacts into contacts(): a, b, and, unless only pairs are wanted, answer_columns, and, if there are
+    /// float64 answers, rest_columns, each contact_stride() long. Returns how many there are. Waits.
+    std::uint32_t gather(bool only_pairs);
+    std::size_t gathered_columns(bool only_pairs) const {
+        return 2 + (only_pairs ? 0 : answer_columns + (float64_ ? rest_columns : 0));
+    }
+    bool rests() const noexcept { return float64_; }
     const Buffer& contacts() const { return contacts_; }
     std::uint64_t contact_stride() const { return contact_stride_; }
 
@@ -87,7 +93,7 @@ private:
     std::vector<BucketSlice> slices_;
     std::uint32_t n_ = 0, slots_used_ = 0;
     std::uint64_t stride_ = 0, contact_stride_ = 0;
-    bool with_rests_ = false;
+    bool with_rests_ = false, float64_ = false;
 };
 
 }  // namespace clinch::detail

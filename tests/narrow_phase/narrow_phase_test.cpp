@@ -6,6 +6,8 @@
 #include <cstring>
 #include <set>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "clinch/error.hpp"
 #include "tests/device/devices.hpp"
@@ -111,6 +113,57 @@ TEST_CASE("float32 answers keep their promise, and what they leave open float64 
                 INFO("device " << i << ", lanes " << lanes);
                 check_against_exact(context, 0.0, scene, pairs);
                 check_against_exact(context, 0.5, scene, pairs);
+            }
+    }
+}
+
+namespace {
+
+// touching() against the distances of float64.
+void check_touching(Context& context, double precision, const Scene& scene, const std::vector<Pair>& pairs) {
+    Context host = Context::host_only();
+    const auto exact = test::by_pair(found(host, with_precision(1.0), scene, pairs));
+    NarrowPhase narrow(context, with_precision(precision));
+    const View<const Pair> view = narrow.touching(scene, pairs);
+    CHECK(narrow.report().contacts == view.size());
+    std::set<std::pair<std::uint32_t, std::uint32_t>> touching;
+    for (const Pair& pair : view) touching.insert({pair.a, pair.b});
+    CHECK(touching.size() == view.size());
+    const auto before = [](const Pair& p, const Pair& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); };
+    CHECK(std::is_sorted(view.begin(), view.end(), before));
+    std::size_t sure = 0;
+    for (const Pair& pair : pairs) {
+        INFO("pair " << pair.a << ", " << pair.b << ", precision " << precision);
+        const double margins = scene.columns().margin[pair.a] + scene.columns().margin[pair.b];
+        const auto e = exact.find({pair.a, pair.b});
+        if (e == exact.end()) {
+            CHECK((precision < 0.25 || touching.count({pair.a, pair.b}) == 0));
+        } else if (e->second.distance + e->second.error < margins) {
+            ++sure;
+            CHECK(touching.count({pair.a, pair.b}) == 1);
+        }
+    }
+    CHECK(sure > 100);
+    CHECK(touching.size() < sure + sure / 10 + 10);
+}
+
+}  // namespace
+
+TEST_CASE("which pairs touch is told without contacts", "[device][builds]") {
+    for (const double margin : {0.0, 0.05}) {
+        test::Random random(78);
+        INFO("seed 78, margin " << margin);
+        Scene scene = test::random_bodies(60, 2.5, {0, 0, 0}, random);
+        const std::vector<double> margins(scene.row_count(), margin);
+        scene.set_margins(margins.data(), margins.size());
+        const std::vector<Pair> pairs = test::all_pairs(scene);
+        Context host = Context::host_only();
+        check_touching(host, 1.0, scene, pairs);
+        for (std::uint32_t i = 0; i < list_devices().size(); ++i)
+            for (const double precision : {0.0, 0.5, 1.0}) {
+                Context context = test::with_lanes(i, list_devices()[i].lanes);
+                INFO("device " << i);
+                check_touching(context, precision, scene, pairs);
             }
     }
 }
