@@ -51,7 +51,7 @@ kernel void find_manifolds(global const uint* restrict contacts, ulong stride, u
         m.limit = with_margins ? (real)margins[row_a] + (real)margins[row_b] : number(0.0);
         m.wanted = wanted;
         find_manifold(&a, &b, between, &m);
-        counts[i] = m.count;
+        counts[i] = COUNTED(m.count, m.deepest, m.is_witness);
         for (uint k = 0; k < m.count; ++k) {
             global REAL_SCALAR* out = points + k * OUT_COLUMNS * out_stride + i;
             out[OUT_POINT * out_stride] = m.on_a[k].x;

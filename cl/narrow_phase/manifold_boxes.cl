@@ -47,12 +47,13 @@ inline void gathered_side(const REAL_SCALAR* g, Side* side) {
     for (uint d = 0; d < 3; ++d) side->size[d] = gathered_at(g, 9 + d);
 }
 
-// What is found of PAIR_LANES contacts, a number each; rows of OUT_COLUMNS + 4 of them a point.
+// What is found of PAIR_LANES contacts, a number each; rows of FOUND of them a point.
 #define FOUND_KIND OUT_COLUMNS
 #define FOUND_OF_A (OUT_COLUMNS + 1)
 #define FOUND_OF_B (OUT_COLUMNS + 2)
 #define FOUND_VALID (OUT_COLUMNS + 3)
-#define FOUND (OUT_COLUMNS + 4)
+#define FOUND_ROLE (OUT_COLUMNS + 4)
+#define FOUND (OUT_COLUMNS + 5)
 
 inline void store_point(const BoxManifold* m, uint k, REAL_SCALAR* to) {
     store_reals(m->on_a[k].x, to + OUT_POINT * PAIR_LANES);
@@ -63,6 +64,7 @@ inline void store_point(const BoxManifold* m, uint k, REAL_SCALAR* to) {
     store_reals(m->kind[k], to + FOUND_KIND * PAIR_LANES);
     store_reals(m->of_a[k], to + FOUND_OF_A * PAIR_LANES);
     store_reals(m->of_b[k], to + FOUND_OF_B * PAIR_LANES);
+    store_reals(m->role[k], to + FOUND_ROLE * PAIR_LANES);
     store_reals(choose(m->valid[k], number(1.0), number(0.0)), to + FOUND_VALID * PAIR_LANES);
 }
 
@@ -82,11 +84,10 @@ kernel void find_box_manifolds(global const uint* restrict contacts, ulong strid
     Columns in = {contacts, stride, with_rests};
     for (uint i = get_global_id(0) * per_item, end = min(count, i + per_item); i < end; i += PAIR_LANES) {
         REAL_SCALAR g[GATHERED * PAIR_LANES], found[FOUND * PAIR_LANES * BOX_POINTS];
-        uint at[PAIR_LANES], used[PAIR_LANES];
+        uint at[PAIR_LANES];
         for (uint l = 0; l < PAIR_LANES; ++l) {
             const uint which = min(i + l, end - 1);
             at[l] = listed ? list[which] : which;
-            used[l] = 0;
             gather_contact(g + l, &in, at[l], bodies, shapes, margins, with_margins);
         }
         Side a, b;
@@ -102,15 +103,20 @@ kernel void find_box_manifolds(global const uint* restrict contacts, ulong strid
         find_box_manifold(&a, &b, gathered_vector(g, GATHERED_BETWEEN), &m);
         for (uint k = 0; k < wanted; ++k) store_point(&m, k, found + k * FOUND * PAIR_LANES);
         for (uint l = 0; l < PAIR_LANES && i + l < end; ++l) {
+            uint used = 0, deepest = 0, is_witness = 0;
             for (uint k = 0; k < wanted; ++k) {
                 const REAL_SCALAR* from = found + k * FOUND * PAIR_LANES + l;
                 if (from[FOUND_VALID * PAIR_LANES] == 0) continue;
-                global REAL_SCALAR* out = points + used[l] * OUT_COLUMNS * out_stride + at[l];
+                global REAL_SCALAR* out = points + used * OUT_COLUMNS * out_stride + at[l];
                 for (uint c = 0; c < OUT_COLUMNS; ++c) out[c * out_stride] = from[c * PAIR_LANES];
-                features[used[l] * out_stride + at[l]] = feature_of(from);
-                ++used[l];
+                features[used * out_stride + at[l]] = feature_of(from);
+                if (from[FOUND_ROLE * PAIR_LANES] != 0) {
+                    deepest = used;
+                    is_witness = from[FOUND_ROLE * PAIR_LANES] == 2;
+                }
+                ++used;
             }
-            counts[at[l]] = used[l];
+            counts[at[l]] = COUNTED(used, deepest, is_witness);
         }
     }
 }

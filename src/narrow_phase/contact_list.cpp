@@ -51,7 +51,7 @@ Contact contact_of(const HostAnswer& answer) {
 }
 
 std::size_t count_of(const DevicePoints& points, std::size_t i) {
-    return points.counts.as<std::uint32_t>()[i];
+    return points.count(i);
 }
 std::size_t count_of(const std::vector<FewPoints>& points, std::size_t i) {
     return points[i].count;
@@ -133,15 +133,18 @@ void ContactList::append_points(const Scene& scene, std::size_t count, const Con
 #pragma omp parallel for schedule(static) if (count >= rows_worth_threads)
     for (std::ptrdiff_t i = 0; i < end; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        Contact c = contact_at(at);
+        const Contact whole = contact_at(at);
         const FewPoints few = points_of(points, at);
         Contact* const to = list + firsts_[at];
         for (std::size_t k = 0; k < few.count; ++k) {
             const ManifoldPoint& point = few.points[k];
+            Contact c = whole;
             c.feature = point.feature;
-            c.on_a = {point.on_a[0], point.on_a[1], point.on_a[2]};
-            c.distance = point.distance;
-            c.error = point.error;
+            if (k != few.deepest || !few.is_witness) c.on_a = {point.on_a[0], point.on_a[1], point.on_a[2]};
+            if (k != few.deepest) {
+                c.distance = point.distance;
+                c.error = point.error;
+            }
             place(position[c.a], c);
             to[k] = c;
         }

@@ -61,6 +61,10 @@ FewPoints points_of_boxes(const Scene& scene, const NarrowShapes& shapes, const 
         const auto kind = static_cast<std::uint32_t>(m.kind[k]), of_a = static_cast<std::uint32_t>(m.of_a[k]),
                    of_b = static_cast<std::uint32_t>(m.of_b[k]);
         const std::uint32_t which = kind == 1 ? of_a : kind == 2 ? of_b : of_a << 15 | of_b;
+        if (m.role[k] != 0.0) {
+            out.deepest = out.count;
+            out.is_witness = m.role[k] == 2.0;
+        }
         add_point(out, m.on_a[k], m.along[k], m.off[k], kind == 0 ? 0 : kind << 30 | which);
     }
     return out;
@@ -75,6 +79,8 @@ FewPoints points_of(const Scene& scene, const NarrowShapes& shapes, const HostAn
     auto m = manifold_of<host::Manifold>(s, answer, wanted);
     host::find_manifold(&a, &b, between, &m);
     FewPoints out;
+    out.deepest = m.deepest;
+    out.is_witness = m.is_witness;
     for (std::uint32_t k = 0; k < m.count; ++k)
         add_point(out, m.on_a[k], m.points[k].distance, m.points[k].error, m.points[k].feature);
     return out;
@@ -154,7 +160,10 @@ void Manifolds::find(const NarrowScene& scene, const Slots& slots, const Contact
 
 template <class Real>
 void DevicePoints::read(std::size_t i, FewPoints& out) const {
-    out.count = counts.as<std::uint32_t>()[i];
+    const std::uint32_t counted = counts.as<std::uint32_t>()[i];  // COUNTED of cl/narrow_phase/manifold_columns.clh
+    out.count = counted & 255u;
+    out.deepest = counted >> 8 & 255u;
+    out.is_witness = counted >> 16 != 0;
     for (std::size_t k = 0; k < out.count; ++k) {
         const Real* const from = points.as<Real>() + k * point_columns * stride + i;
         const auto column = [&](std::size_t d) { return static_cast<double>(from[d * stride]); };

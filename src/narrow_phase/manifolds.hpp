@@ -25,6 +25,8 @@ struct ManifoldPoint {
 struct FewPoints {
     ManifoldPoint points[most_points];
     std::uint32_t count = 0;
+    std::uint32_t deepest = 0;  ///< has the contact's own distance and error, rounded perhaps
+    bool is_witness = false;    ///< and its point, too
 };
 
 /// The points of contacts as a device left them, readable on the host while this lives.
@@ -35,6 +37,7 @@ struct DevicePoints {
 
     /// Those of contact i.
     FewPoints at(std::size_t i) const;
+    std::uint32_t count(std::size_t i) const { return counts.as<std::uint32_t>()[i] & 255u; }
 
 private:
     template <class Real>
