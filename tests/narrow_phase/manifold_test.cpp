@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -237,9 +238,13 @@ void check_manifold(const Scene& scene, const Contact& whole, const std::vector<
     }
 }
 
-void check_scene(Context& context, double precision, const Scene& scene, const std::vector<Pair>& pairs) {
-    const auto whole = test::by_pair(found(context, wanting(1, precision), scene, pairs));
-    for (const std::uint32_t wanted : {2u, 3u, 4u, 8u}) {
+// Each call in a context of its own: the simulator takes memory that is used again for memory that was never written.
+void check_scene(const std::function<Context()>& make, double precision, const Scene& scene,
+                 const std::vector<Pair>& pairs, const std::vector<std::uint32_t>& numbers) {
+    Context one = make();
+    const auto whole = test::by_pair(found(one, wanting(1, precision), scene, pairs));
+    for (const std::uint32_t wanted : numbers) {
+        Context context = make();
         const auto groups = grouped(found(context, wanting(wanted, precision), scene, pairs));
         CHECK(groups.size() == whole.size());
         for (const auto& [pair, rows] : groups) check_manifold(scene, whole.at(pair), rows, wanted);
@@ -254,12 +259,12 @@ TEST_CASE("points of any manifold lie on both surfaces", "[device][builds]") {
         INFO("seed " << seed);
         const Scene scene = test::random_bodies(60, 2.0, {0, 0, 0}, random);
         const std::vector<Pair> pairs = test::all_pairs(scene);
-        Context host = Context::host_only();
-        check_scene(host, 1.0, scene, pairs);
-        for (std::uint32_t i = 0; i < list_devices().size(); ++i) {
-            Context context = test::with_lanes(i, list_devices()[i].lanes);
-            for (const double precision : {0.0, 0.5, 1.0}) check_scene(context, precision, scene, pairs);
-        }
+        const std::vector<std::uint32_t> numbers{2, 3, 4, 8};
+        check_scene(Context::host_only, 1.0, scene, pairs, numbers);
+        for (std::uint32_t i = 0; i < list_devices().size(); ++i)
+            for (const double precision : {0.0, 0.5, 1.0})
+                check_scene([&] { return test::with_lanes(i, list_devices()[i].lanes); }, precision, scene, pairs,
+                            numbers);
     }
 }
 
@@ -287,10 +292,8 @@ TEST_CASE("a few manifolds", "[device][plain]") {
     const Scene scene = test::random_bodies(18, 1.2, {0, 0, 0}, random);
     const std::vector<Pair> pairs = test::all_pairs(scene);
     REQUIRE(pairs.size() >= 128);  // on a device
-    for (std::uint32_t i = 0; i < list_devices().size(); ++i) {
-        Context context = test::with_lanes(i, 8);
-        check_scene(context, 0.5, scene, pairs);
-    }
+    for (std::uint32_t i = 0; i < list_devices().size(); ++i)
+        check_scene([&] { return test::with_lanes(i, 8); }, 0.0, scene, pairs, {4});
 }
 
 TEST_CASE("how many contacts a pair may have is checked", "[host]") {
