@@ -21,6 +21,10 @@ double median(std::vector<double> values) {
     return values.size() % 2 != 0 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
+double least(const std::vector<double>& values) {
+    return values.empty() ? 0.0 : *std::min_element(values.begin(), values.end());
+}
+
 bool begins_with_any(const std::string& name, const std::vector<std::string>& with) {
     return std::any_of(with.begin(), with.end(), [&](const std::string& w) { return name.rfind(w, 0) == 0; });
 }

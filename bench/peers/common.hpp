@@ -12,6 +12,9 @@ std::string processor();
 /// 0 of none.
 double median(std::vector<double> values);
 
+/// 0 of none.
+double least(const std::vector<double>& values);
+
 /// Whether `name` begins with one of `with`.
 bool begins_with_any(const std::string& name, const std::vector<std::string>& with);
 

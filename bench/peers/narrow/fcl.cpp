@@ -97,6 +97,11 @@ private:
         const fcl::Contactd& contact = found_.getContact(0);
         answer.distance = -contact.penetration_depth;
         answer.normal = vector_of(contact.normal);
+        // Where the indep solver searches, its depth comes out negative and its normal in the frame of the first shape.
+        if (contact.penetration_depth < 0.0) {
+            answer.distance = contact.penetration_depth;
+            answer.normal = vector_of(transforms_[a].linear() * contact.normal);
+        }
         answer.point = vector_of(contact.pos);
         return answer;
     }

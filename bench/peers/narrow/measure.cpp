@@ -47,6 +47,7 @@ void next_runs(Runner& runner, double pairs, const Rules& rules) {
     if (!goes_on(runner, turn)) return;
     for (unsigned i = 0; i < turn.runs; ++i) {
         runner.result.ns.push_back(1e6 * turn.ms[i] / pairs);
+        runner.result.cpu_ns.push_back(1e6 * turn.cpu_ms[i] / pairs);
         if (turn.routines_ms[i] > 0.0) runner.result.routines_ns.push_back(1e6 * turn.routines_ms[i] / pairs);
     }
 }
@@ -58,7 +59,7 @@ double Result::median_ns() const {
 }
 
 double Result::least_ns() const {
-    return ns.empty() ? 0.0 : *std::min_element(ns.begin(), ns.end());
+    return least(ns);
 }
 
 double Result::spread() const {
@@ -95,7 +96,7 @@ const Result* fastest_library(const std::vector<Result>& results, bool right) {
     const Result* best = nullptr;
     for (const Result& r : results) {
         if (r.row.group != Group::Library || r.ns.empty() || (right && !r.right(forgiven))) continue;
-        if (best == nullptr || r.median_ns() < best->median_ns()) best = &r;
+        if (best == nullptr || r.least_ns() < best->least_ns()) best = &r;
     }
     return best;
 }

@@ -22,6 +22,7 @@ struct Rules {
 struct Result {
     PeerRow row;
     std::vector<double> ns;           ///< a pair, of all counted runs
+    std::vector<double> cpu_ns;       ///< the same of processor time, which others at work lengthen less
     std::vector<double> routines_ns;  ///< the same of the routines alone; empty where nobody measures that
     std::size_t pairs = 0;
     std::optional<Verdict> verdict;  ///< none of a yardstick, and where `note` says why
@@ -29,7 +30,7 @@ struct Result {
     std::string note;  ///< why there are no times or no more of them
 
     double median_ns() const;
-    double least_ns() const;
+    double least_ns() const;  ///< which others at work lengthen least: what peers are compared by
     /// From the first to the third quarter of the runs, as a share of the median.
     double spread() const;
     /// Every answer within what judge.hpp says, or all but so many of the pairs.
@@ -47,7 +48,7 @@ std::vector<Result> measure(const Batch& batch, Question question, const std::ve
 /// depth search is still what a user would pick.
 constexpr double forgiven = 1e-3;
 
-/// The library of least median among those taken for right, or among all; null without one.
+/// The fastest library, by its shortest run, among those taken for right, or among all; null without one.
 const Result* fastest_library(const std::vector<Result>& results, bool right);
 
 /// The one named so; null without one that has times.

@@ -24,10 +24,10 @@ unsigned long long number(std::uint64_t n) {
     return n;
 }
 
-/// How many times as long as clinch on one core; 0 where there is nothing to compare.
+/// How many times as long as clinch on one core, by the shortest runs; 0 where there is nothing to compare.
 double times_clinch(const Outcome& outcome, const Result* other) {
     const Result* const clinch = find(outcome.results, "clinch");
-    return clinch != nullptr && other != nullptr ? other->median_ns() / clinch->median_ns() : 0.0;
+    return clinch != nullptr && other != nullptr ? other->least_ns() / clinch->least_ns() : 0.0;
 }
 
 void print_verdict(const Result& r, Question question) {
@@ -42,25 +42,31 @@ void print_verdict(const Result& r, Question question) {
 void print_row(const Outcome& outcome, const Result& r) {
     std::printf("  %-17s", r.row.name.c_str());
     if (!r.ns.empty()) {
-        std::printf("%9.1f %9.1f %4.0f%%", r.median_ns(), r.least_ns(), 100.0 * r.spread());
+        std::printf("%9.1f %9.1f %4.0f%% %9.1f", r.least_ns(), r.median_ns(), 100.0 * r.spread(), median(r.cpu_ns));
         if (r.routines_ns.empty())
             std::printf("%10s", "");
         else
-            std::printf("%10.1f", median(r.routines_ns));
+            std::printf("%10.1f", least(r.routines_ns));
         std::printf("%9.2f", times_clinch(outcome, &r));
     } else if (r.verdict) {
-        std::printf("%43s", "");
+        std::printf("%53s", "");
     }
     if (r.verdict) print_verdict(r, outcome.job.question);
     std::printf("%s%s\n", r.note.empty() ? "" : " ", r.note.c_str());
 }
 
-/// "bullet 5.2", padded.
-void print_against(const Outcome& outcome, const Result* library) {
+double times(double one, double other) {
+    return other > 0.0 ? one / other : 0.0;
+}
+
+/// A library, its time, and how many times as long as clinch's call and its routines alone that is.
+void print_against(const Result& clinch, const Result* library) {
     if (library == nullptr)
-        std::printf("  %-24s", "none");
+        std::printf(" | %-40s", "none");
     else
-        std::printf("  %-14s %9.2f", library->row.name.c_str(), times_clinch(outcome, library));
+        std::printf(" | %-13s %9.1f %8.2f %7.2f", library->row.name.c_str(), library->least_ns(),
+                    times(library->least_ns(), clinch.least_ns()),
+                    times(library->least_ns(), least(clinch.routines_ns)));
 }
 
 ordered_json json_of(const Verdict& v) {
@@ -78,11 +84,15 @@ ordered_json json_of(const Verdict& v) {
 ordered_json json_of(const Outcome& outcome, const Result& r) {
     ordered_json json{{"name", r.row.name}, {"group", name_of(r.row.group)}, {"one_core", r.row.one_core}};
     if (!r.ns.empty()) {
-        json["ns_median"] = r.median_ns();
         json["ns_least"] = r.least_ns();
+        json["ns_median"] = r.median_ns();
         json["spread"] = r.spread();
+        json["cpu_ns_median"] = median(r.cpu_ns);
         json["times_clinch"] = times_clinch(outcome, &r);
-        if (!r.routines_ns.empty()) json["routines_ns_median"] = median(r.routines_ns);
+        if (!r.routines_ns.empty()) {
+            json["routines_ns_least"] = least(r.routines_ns);
+            json["routines_ns_median"] = median(r.routines_ns);
+        }
         json["ns"] = r.ns;
         json["peak_bytes"] = r.peak_bytes;
     }
@@ -108,8 +118,8 @@ void print(const Outcome& outcome) {
                 outcome.truth_error);
     if (outcome.oracle.pairs > 0)
         std::printf("; within %.1e of the oracle on %zu pairs", outcome.oracle.worst, outcome.oracle.pairs);
-    std::printf("\n  %-17s%9s %9s %5s%10s%9s %7s %7s", "", "ns/pair", "least", "iqr", "routines", "x clinch", "missing",
-                "touch");
+    std::printf("\n  %-17s%9s %9s %5s %9s%10s%9s %7s %7s", "", "ns/pair", "median", "iqr", "cpu", "routines",
+                "x clinch", "missing", "touch");
     if (outcome.job.question != Question::Touching)
         std::printf(" %7s %9s %7s %9s %7s %9s", "dist", "worst", "normal", "worst", "point", "worst");
     std::printf("\n");
@@ -118,19 +128,23 @@ void print(const Outcome& outcome) {
 }
 
 void print_summary(const std::vector<Outcome>& outcomes) {
-    std::printf("\n%-28s %-12s %9s %9s %9s  %-24s  %-24s  %s\n", "summary", "", "clinch ns", "routines", "all cores",
-                "fastest right, x clinch", "fastest of all, x", "its wrong");
+    std::printf("\nshortest runs, ns a pair, and times of clinch's: the call, the routines alone\n");
+    std::printf("%-18s %-11s %9s %9s %9s %8s | %-13s %9s %8s %7s | %-13s %9s %8s %7s %7s\n", "", "", "clinch",
+                "routines", "all cores", "routines", "fastest right", "ns", "x call", "x rout.", "fastest", "ns",
+                "x call", "x rout.", "wrong");
     for (const Outcome& outcome : outcomes) {
         const Result* const clinch = find(outcome.results, "clinch");
         if (clinch == nullptr) continue;
-        const Result* const all_cores = find(outcome.results, "clinch/all-cores");
-        const Result* const any = fastest_library(outcome.results, false);
-        std::printf("%-28s %-12s %9.1f %9.1f %8.2fx", outcome.cell.name.c_str(), outcome.job.name.c_str(),
-                    clinch->median_ns(), median(clinch->routines_ns),
-                    all_cores == nullptr ? 0.0 : clinch->median_ns() / all_cores->median_ns());
-        print_against(outcome, fastest_library(outcome.results, true));
-        print_against(outcome, any);
-        std::printf("  %llu\n", any == nullptr || !any->verdict ? 0 : number(any->verdict->wrong()));
+        const Result* const all = find(outcome.results, "clinch/all-cores");
+        const Result* const fastest = fastest_library(outcome.results, false);
+        std::printf("%-18s %-11s %9.1f %9.1f %8.2fx %7.2fx", outcome.cell.name.c_str(), outcome.job.name.c_str(),
+                    clinch->least_ns(), least(clinch->routines_ns),
+                    all == nullptr ? 0.0 : times(clinch->least_ns(), all->least_ns()),
+                    all == nullptr ? 0.0 : times(least(clinch->routines_ns), least(all->routines_ns)));
+        print_against(*clinch, fastest_library(outcome.results, true));
+        print_against(*clinch, fastest);
+        if (fastest != nullptr && fastest->verdict) std::printf(" %7llu", number(fastest->verdict->wrong()));
+        std::printf("\n");
     }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -34,6 +35,13 @@ void use_cores(bool one, unsigned core) {
 #endif
 }
 
+/// Of all threads of the process so far.
+double cpu_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
 /// The child's side of a worker.
 class Runner {
 public:
@@ -46,7 +54,7 @@ public:
 
     Turn first() {
         Turn turn;
-        turn.ms[0] = timed();
+        timed(turn);
         turn.runs = 1;
         turn.verdict = judge(batch_, question_, peer_->answers());
         peer_->routines_ms();
@@ -57,7 +65,7 @@ public:
         Turn turn;
         double sum = 0.0;
         do {
-            turn.ms[turn.runs] = timed();
+            timed(turn);
             turn.routines_ms[turn.runs] = peer_->routines_ms();
             sum += turn.ms[turn.runs++];
         } while (sum < enough_ms && turn.runs < Turn::most_runs);
@@ -66,6 +74,7 @@ public:
                 std::copy(list.begin() + 1, list.begin() + turn.runs, list.begin());
             };
             forget_first(turn.ms);
+            forget_first(turn.cpu_ms);
             forget_first(turn.routines_ms);
             --turn.runs;
         }
@@ -73,10 +82,12 @@ public:
     }
 
 private:
-    double timed() {
+    void timed(Turn& turn) {
+        const double cpu_start = cpu_ms();
         const Clock::time_point start = Clock::now();
         peer_->run();
-        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        turn.ms[turn.runs] = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+        turn.cpu_ms[turn.runs] = cpu_ms() - cpu_start;
     }
     static Turn done(Turn turn) {
         turn.peak_bytes = peak_bytes();

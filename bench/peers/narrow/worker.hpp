@@ -16,6 +16,7 @@ struct Turn {
     bool done = false;
     unsigned runs = 0;
     std::array<double, most_runs> ms{};           ///< of each run
+    std::array<double, most_runs> cpu_ms{};       ///< of each run: what the process had of processors
     std::array<double, most_runs> routines_ms{};  ///< of as many runs apart; 0 where nobody measures that
     Verdict verdict;                              ///< of the first run
     std::uint64_t peak_bytes = 0;                 ///< of the process
