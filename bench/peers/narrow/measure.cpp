@@ -14,6 +14,10 @@ namespace {
 /// Slower peers have two turns only.
 constexpr double slow_ms = 3000.0;
 
+/// How many times longer turns on all cores are: threads that slept start out on one core where others are at work, and
+/// take a while to spread.
+constexpr double longer_on_all_cores = 10.0;
+
 /// A peer on its way through the rounds.
 struct Runner {
     Result result;
@@ -43,7 +47,8 @@ void first_run(Runner& runner, const Batch& batch, Question question, const Rule
 }
 
 void next_runs(Runner& runner, double pairs, const Rules& rules) {
-    const Turn turn = runner.worker->more_runs(rules.enough_ms, rules.most_seconds);
+    const double enough_ms = (runner.result.row.one_core ? 1.0 : longer_on_all_cores) * rules.enough_ms;
+    const Turn turn = runner.worker->more_runs(enough_ms, rules.most_seconds);
     if (!goes_on(runner, turn)) return;
     for (unsigned i = 0; i < turn.runs; ++i) {
         runner.result.ns.push_back(1e6 * turn.ms[i] / pairs);

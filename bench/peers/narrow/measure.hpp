@@ -14,7 +14,7 @@ namespace clinch::peers::narrow {
 
 struct Rules {
     unsigned rounds = 7;
-    double enough_ms = 40.0;     ///< a peer's turn in a round, for batches that take less
+    double enough_ms = 40.0;     ///< a peer's turn in a round, for batches that take less; ten times that on all cores
     double most_seconds = 60.0;  ///< for one turn
     unsigned core = 0;           ///< that peers of one core are bound to
 };

@@ -12,7 +12,7 @@ namespace clinch::peers::narrow {
 
 /// What a worker says of one job.
 struct Turn {
-    static constexpr unsigned most_runs = 32;
+    static constexpr unsigned most_runs = 256;
     bool done = false;
     unsigned runs = 0;
     std::array<double, most_runs> ms{};           ///< of each run
