@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/peers/choice.hpp"
+#include "bench/peers/common.hpp"
 #include "bench/peers/measure.hpp"
 #include "bench/scenes/boxes.hpp"
 
@@ -62,21 +63,11 @@ SceneName scene_of(const std::string& text, std::uint64_t seed) {
 
 /// Those whose names begin with one of `wanted` (all for none) and with none of `without`.
 std::vector<PeerRow> chosen(const std::vector<std::string>& wanted, const std::vector<std::string>& without) {
-    const auto begins = [](const std::string& name, const std::vector<std::string>& with) {
-        return std::any_of(with.begin(), with.end(), [&](const std::string& w) { return name.rfind(w, 0) == 0; });
-    };
     std::vector<PeerRow> rows;
     for (PeerRow& row : peer_rows())
-        if ((wanted.empty() || begins(row.name, wanted)) && !begins(row.name, without)) rows.push_back(std::move(row));
+        if ((wanted.empty() || begins_with_any(row.name, wanted)) && !begins_with_any(row.name, without))
+            rows.push_back(std::move(row));
     return rows;
-}
-
-std::string processor() {
-    std::ifstream file("/proc/cpuinfo");
-    for (std::string line; std::getline(file, line);)
-        if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos)
-            return line.substr(line.find(": ") + 2);
-    return "unknown";
 }
 
 void print(const Outcome& outcome) {

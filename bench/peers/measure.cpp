@@ -5,6 +5,7 @@
 #include <memory>
 #include <thread>
 
+#include "bench/peers/common.hpp"
 #include "bench/peers/worker.hpp"
 #include "bench/scenes/boxes.hpp"
 
@@ -105,11 +106,7 @@ std::vector<Runner> first_runs(Outcome& outcome, const Scenes& scenes, const std
 }  // namespace
 
 double Result::median_ms() const {
-    if (ms.empty()) return 0.0;
-    std::vector<double> sorted = ms;
-    std::sort(sorted.begin(), sorted.end());
-    const std::size_t half = sorted.size() / 2;
-    return sorted.size() % 2 != 0 ? sorted[half] : 0.5 * (sorted[half - 1] + sorted[half]);
+    return median(ms);
 }
 
 Outcome measure(const SceneName& scene, const std::vector<PeerRow>& rows, const Rules& rules) {

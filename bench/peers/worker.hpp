@@ -1,7 +1,5 @@
-// A process that holds one peer: libraries that crash, hang or leave threads behind do so there.
+// A process that holds one peer.
 #pragma once
-
-#include <sys/types.h>
 
 #include <array>
 #include <cstdint>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "bench/peers/peer.hpp"
+#include "bench/peers/process.hpp"
 
 namespace clinch::peers {
 
@@ -30,8 +29,7 @@ struct Answer {
 /// reported.
 using Scenes = std::array<std::vector<Aabb>, 2>;
 
-/// Runs a peer in a child process. The process that makes it must not have used OpenCL or OpenMP: those
-/// do not survive a fork. POSIX calls that fail are std::system_error.
+/// Runs a peer in a child process; see there.
 class Worker {
     struct Command {
         char job;
@@ -42,10 +40,6 @@ class Worker {
 public:
     /// `row`, `scenes` and `setup` are read by the child; the caller's may go.
     Worker(const PeerRow& row, const Scenes& scenes, const Setup& setup);
-    /// Ends the child at once.
-    ~Worker();
-    Worker(const Worker&) = delete;
-    Worker& operator=(const Worker&) = delete;
 
     /// Makes the peer and runs it on both scenes, untouched memory and all; takes the mark.
     Answer first_run(double most_seconds) { return ask({'f', 0.0, 0}, most_seconds); }
@@ -57,13 +51,12 @@ public:
     Answer more_runs(double enough_ms, double most_seconds) { return ask({'m', enough_ms, 0}, most_seconds); }
 
 private:
-    Answer ask(const Command& command, double most_seconds);
-    std::string end_of_child();
-    [[noreturn]] static void serve(const PeerRow& row, const Scenes& scenes, const Setup& setup, int commands,
-                                   int answers);
+    Answer ask(const Command& command, double most_seconds) {
+        return process_.ask<Command, Answer>(command, most_seconds);
+    }
+    static void serve(const PeerRow& row, const Scenes& scenes, const Setup& setup, int commands, int answers);
 
-    pid_t child_ = -1;
-    int commands_ = -1, answers_ = -1;
+    Process process_;
 };
 
 }  // namespace clinch::peers
