@@ -40,8 +40,8 @@ class Slots {
 public:
     explicit Slots(Device& device) : device_(device), sort_(device), scan_(device) {}
 
-    /// Most pairs a chunk may have.
-    static constexpr std::size_t chunk_pairs = std::size_t{1} << 18;
+    /// Most pairs a chunk may have: their answers stay in a core's cache until they are contacts.
+    static constexpr std::size_t chunk_pairs = std::size_t{1} << 16;
 
     /// Slots of a bucket begin at a multiple of this: vectors of answers end in the bucket's own slots.
     static constexpr std::uint32_t block = 16;

@@ -1,4 +1,4 @@
-// clinch itself: NarrowPhase::find on the devices that CLINCH_DEVICES and the drivers give.
+// clinch itself: NarrowPhase::find and touching on the devices that CLINCH_DEVICES and the drivers give.
 #include "bench/peers/narrow/peer.hpp"
 #include "clinch/context.hpp"
 #include "clinch/narrow_phase.hpp"
@@ -6,8 +6,9 @@
 namespace clinch::peers::narrow {
 namespace {
 
-NarrowPhaseOptions options_of(double precision, bool stages) {
+NarrowPhaseOptions options_of(double precision, std::uint32_t points, bool stages) {
     NarrowPhaseOptions options;
+    options.contacts_per_pair = points;
     options.precision = precision;
     options.measure_stages = stages;
     return options;
@@ -20,15 +21,21 @@ double margin_for(const Batch& batch, Question question) {
 
 class Clinch : public Peer {
 public:
-    Clinch(const Batch& batch, Question question, double precision)
+    Clinch(const Batch& batch, Question question, double precision, std::uint32_t points)
         : scene_(scene_of(batch, margin_for(batch, question))),
-          narrow_phase_(context_, options_of(precision, false)),
-          in_stages_(context_, options_of(precision, true)),
+          only_touching_(question == Question::Touching),
+          narrow_phase_(context_, options_of(precision, points, false)),
+          in_stages_(context_, options_of(precision, points, true)),
           answers_(batch.pairs()) {
         for (std::uint32_t i = 0; i < batch.pairs(); ++i) pairs_.push_back({2 * i, 2 * i + 1});
     }
 
-    void run() override { contacts_ = narrow_phase_.find(scene_, pairs_); }
+    void run() override {
+        if (only_touching_)
+            touching_ = narrow_phase_.touching(scene_, pairs_);
+        else
+            contacts_ = narrow_phase_.find(scene_, pairs_);
+    }
 
     // A pair's deepest contact counts.
     const std::vector<Answer>& answers() override {
@@ -36,6 +43,7 @@ public:
             answer = {};
             answer.given = true;
         }
+        for (const Pair& pair : touching_) answers_[pair.a / 2].touching = true;
         for (const Contact& c : contacts_) {
             Answer& answer = answers_[c.a / 2];
             if (answer.distance <= c.distance) continue;
@@ -49,23 +57,29 @@ public:
     }
 
     double routines_ms() override {
-        in_stages_.find(scene_, pairs_);
-        return in_stages_.report().ms.routines;
+        if (only_touching_)
+            in_stages_.touching(scene_, pairs_);
+        else
+            in_stages_.find(scene_, pairs_);
+        return in_stages_.report().ms.routines + in_stages_.report().ms.manifolds;
     }
 
 private:
     Context context_;
     Scene scene_;
+    bool only_touching_;
     NarrowPhase narrow_phase_, in_stages_;
     std::vector<Pair> pairs_;
     View<const Contact> contacts_;
+    View<const Pair> touching_;
     std::vector<Answer> answers_;
 };
 
 }  // namespace
 
-std::unique_ptr<Peer> make_clinch(const Batch& batch, Question question, double precision) {
-    return std::make_unique<Clinch>(batch, question, precision);
+std::unique_ptr<Peer> make_clinch(const Batch& batch, Question question, double precision, std::uint32_t points) {
+    if (points > 1 && question != Question::Contact) return nullptr;
+    return std::make_unique<Clinch>(batch, question, precision, points);
 }
 
 }  // namespace clinch::peers::narrow
