@@ -20,10 +20,12 @@ struct Question {
     real tolerance = 0;
 
     void ask(const Side& a, const Side& b, v3 between, Touch& touch) const {
+        touch.limit = SUPPORT_FAR;
+        touch.tolerance = 0;
         if (routine != nullptr)
             routine(&a, &b, between, &touch);
         else
-            touch_convex_within(kind_a, kind_b, &a, &b, between, CONVEX_FAR, tolerance, &touch);
+            touch_convex_within(kind_a, kind_b, &a, &b, between, SUPPORT_FAR, tolerance, &touch);
     }
 };
 

@@ -17,12 +17,15 @@
 namespace clinch {
 
 struct NarrowPhaseOptions {
-    /// Speed against precision, 0 (fastest) to 1 (most exact). Below 0.25: float32 alone; an answer whose `error`
-    /// reaches across 0 is one the shapes may or may not touch by. From 0.25 on: float32, and float64 for every pair of
-    /// which float32 cannot tell whether it touches. From 0.75 on: float64 for all.
+    /// Speed against precision, 0 (fastest) to 1 (most exact): of each pair of classes the fastest way that keeps it,
+    /// by measured times and errors (docs/accuracy.md). Below 0.25: float32 alone, to 1e-4 of the pair's size at 0 and
+    /// 1e-6 at 0.25; an answer whose `error` reaches across 0 is one the shapes may or may not touch by. From 0.25 on:
+    /// float32, and float64 for every pair of which float32 cannot tell whether it touches. From 0.75 on: float64 for
+    /// all.
     double precision = 0.5;
     /// Instead of `precision`: the error that answers may have, in the scene's unit of length. Pairs of which float32
-    /// cannot promise it are done in float64; those that still miss it are counted in NarrowReport::tolerance_missed.
+    /// cannot promise it are done in float64, all at once where that holds of most; those that still miss it are
+    /// counted in NarrowReport::tolerance_missed.
     std::optional<double> tolerance;
     /// Most points of a pair's manifold, 1 to 8. 1: the witness points alone, `feature` 0. More: of where a face, or
     /// the line of a round side, lies along the other body, the points that hold the two apart together, too. They
@@ -47,6 +50,7 @@ struct NarrowTimes {
 struct BucketReport {
     std::string classes;      ///< as "sphere-box"
     std::string routine;      ///< name of the routine that ran
+    std::string numbers;      ///< it computed with: "float32", "float64", or "float32, float64" for pairs left open
     std::uint64_t pairs = 0;  ///< candidates
     std::uint64_t again = 0;  ///< of those, done in float64 after float32 could not decide
 };

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "src/device/quirks.hpp"
 #include "src/device/stopwatch.hpp"
 #include "src/narrow_phase/contact_list.hpp"
+#include "src/narrow_phase/cursor.hpp"
 #include "src/narrow_phase/host_narrow.hpp"
 #include "src/narrow_phase/manifolds.hpp"
 #include "src/narrow_phase/matrix.hpp"
@@ -60,7 +62,8 @@ struct NarrowPhase::Impl {
     std::unique_ptr<Manifolds> manifolds;
     // Of a bucket, in 32 and 64 bits: for contacts, and for only which pairs touch.
     std::array<std::array<std::array<Kernel, 2>, 2>, 32> kernels;
-    bool only_pairs = false;  // what the call that is under way asks for
+    std::array<std::array<std::optional<Plan>, 2>, 32> plans;  // of a bucket for the shapes there are, as kernels
+    bool only_pairs = false;                                   // what the call that is under way asks for
     ContactList contacts;
     std::vector<Pair> touching;
     NarrowReport report;
@@ -82,7 +85,8 @@ struct NarrowPhase::Impl {
     bool may_have_points() const;
     void append_points(const Scene& scene, const GatheredContacts& gathered);
     Kernel& kernel(std::size_t k, unsigned bits);
-    bool in_float32(const MatrixRow& row) const;
+    const Plan& plan(std::size_t k);
+    bool in_float32(std::size_t k);
     Device& device() const { return context.open(context.primary()); }
     void stage_done() const {
         if (options.measure_stages) device().finish();
@@ -103,10 +107,13 @@ void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs, bool to
     touching.clear();
     report = NarrowReport{};
     report.pairs = pairs.size();
-    for (const MatrixRow& row : matrix()) report.buckets.push_back({classes_text(row), row.module, 0, 0});
+    for (const MatrixRow& row : matrix()) report.buckets.push_back({classes_text(row), row.module, {}, 0, 0});
     const Stopwatch upload;
     const bool shapes_changed = shapes.update(scene);
-    if (shapes_changed && on_device) on_device->shapes_changed();  // also where this call has no need of the device
+    if (shapes_changed) {
+        plans = {};
+        if (on_device) on_device->shapes_changed();  // also where this call has no need of the device
+    }
     report.ms.upload = upload.ms();
     try {
         if (worth_a_device(pairs.size()))
@@ -139,7 +146,9 @@ void NarrowPhase::Impl::find_on_host(const Scene& scene, View<const Pair> pairs)
     for (const Pair& pair : pairs) {
         const MatrixRow* const row = row_of(scene, shapes, pair);
         if (row == nullptr) throw_no_routine(pair);
-        ++report.buckets[static_cast<std::size_t>(row - matrix().data())].pairs;
+        BucketReport& bucket = report.buckets[static_cast<std::size_t>(row - matrix().data())];
+        ++bucket.pairs;
+        bucket.numbers = "float64";
     }
     for (std::size_t first = 0; first < pairs.size(); first += Slots::chunk_pairs) {
         const std::vector<HostAnswer> answers =
@@ -164,7 +173,7 @@ void NarrowPhase::Impl::find_on_device(const Scene& scene, View<const Pair> pair
     }
     const Stopwatch upload;
     on_device->update_classes(scene, shapes);
-    on_device->update(scene, shapes, level == Level::Exact ? 64 : 32);
+    if (!options.tolerance) on_device->update(scene, shapes, level == Level::Exact ? 64 : 32);
     stage_done();
     report.ms.upload += upload.ms();
     for (std::size_t first = 0; first < pairs.size(); first += Slots::chunk_pairs)
@@ -232,27 +241,41 @@ void NarrowPhase::Impl::append_points(const Scene& scene, const GatheredContacts
     contacts.append(scene, gathered, points);
 }
 
+const Plan& NarrowPhase::Impl::plan(std::size_t k) {
+    std::optional<Plan>& plan = plans[k][only_pairs ? 1 : 0];
+    if (plan) return *plan;
+    NarrowPhaseOptions wanted = options;
+    if (only_pairs) wanted.tolerance.reset();
+    const MatrixRow& row = matrix()[k];
+    plan = plan_of(row, wanted, wanted.tolerance ? largest_pair(shapes, row) : 1.0);
+    return *plan;
+}
+
 // Whether the device is asked in float32 first.
-bool NarrowPhase::Impl::in_float32(const MatrixRow& row) const {
+bool NarrowPhase::Impl::in_float32(std::size_t k) {
+    const MatrixRow& row = matrix()[k];
     const DeviceInfo& info = context.infos[context.primary()];
     const bool any_loops = most_loop_iterations(info) == std::numeric_limits<std::uint32_t>::max();
-    return level != Level::Exact && (row.lanes || any_loops);
+    return (level == Level::Fast || plan(k).passes != Passes::float64) && (row.lanes || any_loops);
 }
 
 void NarrowPhase::Impl::do_bucket(const Scene& scene, View<const Pair> pairs, std::size_t k) {
     const BucketSlice bucket = slots->bucket(k);
-    const MatrixRow& row = matrix()[k];
     const bool fp64 = context.infos[context.primary()].fp64;
     report.buckets[k].pairs += bucket.count;
-    if (!in_float32(row)) {
+    if (!in_float32(k)) {
+        report.buckets[k].numbers = "float64";
         if (fp64)
             run_float64(scene, k, bucket);
         else
             run_on_host(scene, pairs, bucket);
         return;
     }
+    if (options.tolerance) on_device->update(scene, shapes, 32);
     run(k, bucket, 32);
-    if (level == Level::Fast) return;
+    const bool alone = level == Level::Fast;
+    report.buckets[k].numbers = alone ? "float32" : "float32, float64";
+    if (alone) return;
     const BucketSlice open = slots->undecided(bucket);
     if (open.count == 0) return;
     report.buckets[k].again += open.count;
@@ -286,10 +309,12 @@ void NarrowPhase::Impl::run(std::size_t k, const BucketSlice& slice, unsigned bi
     const Buffer& margins = with_margins ? on_device->margins() : on_device->classes();
     const float tolerance = options.tolerance && !only_pairs ? static_cast<float>(std::min(*options.tolerance, 3e38))
                                                              : std::numeric_limits<float>::infinity();
+    const auto relative = static_cast<float>(bits == 64 ? plan(k).tolerance64 : plan(k).tolerance32);
     Kernel& touch = kernel(k, bits);
     touch.args(slots->pairs(), *slice.numbers, slice.listed ? 1u : 0u, slice.first, slice.count, per_item,
                on_device->bodies(bits), on_device->shapes(bits), on_device->vertices(bits), margins,
-               with_margins ? 1u : 0u, slots->answers(), slots->stride(), slice.first_slot, tolerance, slots->hits());
+               with_margins ? 1u : 0u, slots->answers(), slots->stride(), slice.first_slot, tolerance, relative,
+               slots->hits());
     const std::size_t group = device().group_size();
     device().launch(touch, (items + group - 1) / group, group);
 }

@@ -137,7 +137,7 @@ TEST_CASE("iterations that stop where the cursor says meet the tolerance", "[hos
 
 TEST_CASE("the largest pair of a cell bounds all pairs that touch", "[host]") {
     Scene scene;
-    NarrowShapes shapes;
+    NarrowShapes shapes(false);
     shapes.update(scene);
     CHECK(largest_pair(shapes, matrix()[0]) == 0.0);
     scene.add_shape(Sphere{0.5});

@@ -265,8 +265,11 @@ TEST_CASE("statistics of contacts tell what was done and what was not", "[progra
     for (const char* const part : {"upload", "buckets", "routines", "manifolds", "gather"})
         CHECK(stats["ms_narrow"][part] >= 0.0);
     REQUIRE(stats["buckets"].size() == 4);
-    CHECK(stats["buckets"][0] ==
-          Json({{"classes", "sphere-sphere"}, {"routine", "narrow_phase/sphere_sphere"}, {"pairs", 1}, {"again", 0}}));
+    CHECK(stats["buckets"][0] == Json({{"classes", "sphere-sphere"},
+                                       {"routine", "narrow_phase/sphere_sphere"},
+                                       {"numbers", "float64"},
+                                       {"pairs", 1},
+                                       {"again", 0}}));
     CHECK(stats["buckets"][3]["classes"] == "capsule-plane");
     CHECK(stats["skipped"]["cells"] == 23);
     // Four pairs wake no device.

@@ -52,6 +52,7 @@ void add_narrow(Json& stats, const NarrowReport& report, const NarrowTimes& ms) 
     for (const BucketReport& bucket : report.buckets)
         buckets.push_back({{"classes", bucket.classes},
                            {"routine", bucket.routine},
+                           {"numbers", bucket.numbers},
                            {"pairs", bucket.pairs},
                            {"again", bucket.again}});
     stats["buckets"] = std::move(buckets);
