@@ -86,7 +86,7 @@ Hull random_hull(double scale, Random& random) {
         }
         if (style == 2) {  // a prism: two parallel faces of many points
             const double angle =
-                6.283185307179586 * static_cast<double>(i / 2) / std::ceil(static_cast<double>(count) / 2);
+                6.283185307179586 * std::floor(static_cast<double>(i) / 2) / std::ceil(static_cast<double>(count) / 2);
             v = {std::cos(angle), std::sin(angle), i % 2 == 0 ? 1.0 : -1.0};
         }
         if (style == 3) v = {std::copysign(1.0, v[0]), std::copysign(1.0, v[1]), v[2] < 0.5 ? -1.0 : 1.0};

@@ -84,11 +84,15 @@ struct Look {
     }
 };
 
-// Where the general routine's direction may be off by x, its points may be by the square root of x times the size.
+// Along a direction that parts bodies apart by d less than d by e, their points miss each other by sqrt(2 d e). Where
+// the general routine's direction may be off by e, its points may be by some times the square root of e and the size;
+// in float32 more, where bodies touch and the way between their points is rounding.
 Real witness_allowed(const Look& look) {
-    const Real e = look.c.error, size = look.posed.size;
-    const Real sideways = look.general() ? 4 * std::sqrt((e + look.tolerance() * size) * size) : 0;
-    return 4 * e + look.world + 64 * look.rounding() * size + sideways;
+    const Real d = look.c.distance, e = look.c.error, size = look.posed.size;
+    const Real missed = d > 0 ? std::sqrt(2 * d * e) : 0;
+    const Real times = !look.general() ? 0 : look.asked == Asked::exact ? 4 : 16;
+    const Real sideways = times * std::sqrt((e + look.tolerance() * size) * size);
+    return 4 * e + look.world + 64 * look.rounding() * size + missed + sideways;
 }
 
 void note(Fault fault, const Look& look, const Bracket& bracket, Tally& tally) {
