@@ -16,6 +16,7 @@ struct Group {
 
 std::vector<test::TruePair> pairs_of(const std::vector<Sample>& samples) {
     std::vector<test::TruePair> pairs;
+    pairs.reserve(samples.size());
     for (const Sample& s : samples) pairs.push_back(s.pair);
     return pairs;
 }

@@ -20,7 +20,7 @@ struct Figures {
     double regret = 0;                     ///< worst shortfall of the separation along the normal
     std::size_t broken = 0;                ///< promises that were surely not kept
     std::size_t open = 0;                  ///< promises that the reference is not sure enough to judge
-    std::size_t not_numbers = 0;           ///< answers with NaN or infinity in them
+    std::size_t not_numbers = 0;           ///< answers with NaN or infinity in them, or that had to be stopped
     std::size_t missed = 0, invented = 0;  ///< libraries: overlaps denied, and claimed of bodies that are apart
     double ns = 0;                         ///< a pair; 0: not timed
 };
