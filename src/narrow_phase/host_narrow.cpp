@@ -11,7 +11,8 @@ bool usable(const Scene::Impl& s, std::uint32_t row) {
     return row < s.row_count() && s.alive[row] != 0 && s.faults[row] == 0;
 }
 
-HostAnswer touch_pair(const Scene& scene, const NarrowShapes& shapes, const Pair& pair) {
+HostAnswer touch_pair(const Scene& scene, const NarrowShapes& shapes, const Pair& pair,
+                      const RowTolerances& tolerances) {
     const Scene::Impl& s = scene.impl();
     const MatrixRow& row = *row_of(scene, shapes, pair);
     const bool swapped = shapes.records()[s.shape[pair.a]].kind != row.a;
@@ -22,6 +23,7 @@ HostAnswer touch_pair(const Scene& scene, const NarrowShapes& shapes, const Pair
     const double limit = s.margin[pair.a] + s.margin[pair.b];
     host::Touch touch{};
     touch.limit = limit;
+    touch.tolerance = tolerances[static_cast<std::size_t>(&row - matrix().data())];
     row.host(&a, &b, between, &touch);
     if (swapped) {
         touch.point = host::v_sub(host::v_along(touch.point, touch.distance, touch.normal), between);
@@ -62,13 +64,14 @@ const MatrixRow* row_of(const Scene& scene, const NarrowShapes& shapes, const Pa
     return bucket == no_bucket ? nullptr : &matrix()[bucket];
 }
 
-std::vector<HostAnswer> touch_on_host(const Scene& scene, const NarrowShapes& shapes, View<const Pair> pairs) {
+std::vector<HostAnswer> touch_on_host(const Scene& scene, const NarrowShapes& shapes, View<const Pair> pairs,
+                                      const RowTolerances& tolerances) {
     std::vector<HostAnswer> answers(pairs.size());
     const auto count = static_cast<std::ptrdiff_t>(pairs.size());
 #pragma omp parallel for schedule(dynamic, 64) if (pairs.size() >= pairs_worth_threads)
     for (std::ptrdiff_t i = 0; i < count; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        answers[at] = touch_pair(scene, shapes, pairs[at]);
+        answers[at] = touch_pair(scene, shapes, pairs[at], tolerances);
     }
     return answers;
 }

@@ -86,6 +86,7 @@ struct NarrowPhase::Impl {
     void append_points(const Scene& scene, const GatheredContacts& gathered);
     Kernel& kernel(std::size_t k, unsigned bits);
     const Plan& plan(std::size_t k);
+    RowTolerances host_tolerances();
     bool in_float32(std::size_t k);
     Device& device() const { return context.open(context.primary()); }
     void stage_done() const {
@@ -152,7 +153,8 @@ void NarrowPhase::Impl::find_on_host(const Scene& scene, View<const Pair> pairs)
     }
     for (std::size_t first = 0; first < pairs.size(); first += Slots::chunk_pairs) {
         const std::vector<HostAnswer> answers =
-            touch_on_host(scene, shapes, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)});
+            touch_on_host(scene, shapes, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)},
+                          host_tolerances());
         if (only_pairs) {
             for (const HostAnswer& answer : answers)
                 if (answer.hit) touching.push_back({answer.a, answer.b});
@@ -251,6 +253,14 @@ const Plan& NarrowPhase::Impl::plan(std::size_t k) {
     return *plan;
 }
 
+// As a device's float64 has them, of the rows that have pairs.
+RowTolerances NarrowPhase::Impl::host_tolerances() {
+    RowTolerances tolerances{};
+    for (std::size_t k = 0; k < report.buckets.size(); ++k)
+        if (report.buckets[k].pairs > 0) tolerances[k] = plan(k).tolerance64;
+    return tolerances;
+}
+
 // Whether the device is asked in float32 first.
 bool NarrowPhase::Impl::in_float32(std::size_t k) {
     const MatrixRow& row = matrix()[k];
@@ -323,7 +333,7 @@ void NarrowPhase::Impl::run_on_host(const Scene& scene, View<const Pair> pairs, 
     std::vector<Pair> again;
     again.reserve(slice.count);
     for (const std::uint32_t number : slots->numbers(slice)) again.push_back(pairs[number]);
-    slots->put(slice, touch_on_host(scene, shapes, again));
+    slots->put(slice, touch_on_host(scene, shapes, again, host_tolerances()));
 }
 
 NarrowPhase::NarrowPhase(Context& context, const NarrowPhaseOptions& options)
