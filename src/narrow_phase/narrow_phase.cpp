@@ -257,7 +257,7 @@ const Plan& NarrowPhase::Impl::plan(std::size_t k) {
 RowTolerances NarrowPhase::Impl::host_tolerances() {
     RowTolerances tolerances{};
     for (std::size_t k = 0; k < report.buckets.size(); ++k)
-        if (report.buckets[k].pairs > 0) tolerances[k] = plan(k).tolerance64;
+        if (report.buckets[k].pairs > 0) tolerances[k] = static_cast<double>(static_cast<float>(plan(k).tolerance64));
     return tolerances;
 }
 
