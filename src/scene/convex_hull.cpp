@@ -246,6 +246,13 @@ void make_face(const std::vector<Vec3>& points, HullFace& face, int exponent) {
     for (const Flat& p : chain) face.corners.push_back(p.corner);
 }
 
+// Facets as Qhull has them; none where it fails.
+std::vector<HullFace> raw_faces(const std::vector<Vec3>& points, const char* options) {
+    const QhullRun run(points, options);
+    if (!run.ok()) return {};
+    return run.faces();
+}
+
 }  // namespace
 
 bool spans_volume(const std::vector<Vec3>& points) {
@@ -290,17 +297,13 @@ std::vector<HullFace> hull_faces(const std::vector<Vec3>& points) {
     const auto [scaled, exponent] = normalized(points);
     // Facets whose middles are within so much of their neighbours' planes are one; some hulls Qhull can only do
     // without.
-    for (const char* options : {"qhull C-1e-6 Pp", "qhull Pp"}) {
-        const QhullRun run(scaled, options);
-        if (!run.ok()) continue;
-        std::vector<HullFace> faces = run.faces();
-        for (HullFace& face : faces) make_face(scaled, face, -exponent);
-        faces.erase(
-            std::remove_if(faces.begin(), faces.end(), [](const HullFace& face) { return face.corners.size() < 3; }),
-            faces.end());
-        return faces;
-    }
-    return {};
+    std::vector<HullFace> faces = raw_faces(scaled, "qhull C-1e-6 Pp");
+    if (faces.empty()) faces = raw_faces(scaled, "qhull Pp");
+    for (HullFace& face : faces) make_face(scaled, face, -exponent);
+    faces.erase(
+        std::remove_if(faces.begin(), faces.end(), [](const HullFace& face) { return face.corners.size() < 3; }),
+        faces.end());
+    return faces;
 }
 
 }  // namespace clinch::detail

@@ -286,8 +286,8 @@ TEST_CASE("statistics of contacts tell what was done and what was not", "[progra
     const std::string far =
         box_file<double>(folder, {1e6 + 0.1, 0, 0, 1e6 + 0.7, 1, 1, 1e6 + 0.3, 0, 0, 1e6 + 1, 1, 1});
     for (const char* const tolerance : {"1e-11", "1e-9"}) {
-        REQUIRE(run_program(
-                    {"contacts", far, "-o", folder / "o.csv", "--stats", folder / "s.json", "--tolerance", tolerance})
+        REQUIRE(run_program({"contacts", far, "-o", folder / "o.csv", "--stats", folder / "s.json", "--tolerance",
+                             tolerance, "--contacts-per-pair", "1"})
                     .status == 0);
         CHECK(Json::parse(content(folder / "s.json"))["tolerance_missed"] == (tolerance[3] == '1' ? 1 : 0));
     }
@@ -322,7 +322,8 @@ TEST_CASE("rejected boxes and bodies are left out of contacts, or refused", "[pr
     constexpr float nan = std::numeric_limits<float>::quiet_NaN();
     const std::string input =
         box_file<float>(folder, {0, 0, 0, 1, 1, 1, 0, nan, 0, 1, 1, 1, 3, 0, 0, 2, 1, 1, 0.5f, 0, 0, 2, 1, 1});
-    const ProgramRun run = run_program({"contacts", input, "-o", "-", "--stats", folder / "s.json"});
+    const ProgramRun run =
+        run_program({"contacts", input, "-o", "-", "--stats", folder / "s.json", "--contacts-per-pair", "1"});
     CHECK(run.status == 0);
     const std::vector<Row> rows = parse(run.out);
     REQUIRE(rows.size() == 1);
