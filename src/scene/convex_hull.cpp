@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <string>
 #include <tuple>
 
 namespace clinch::detail {
@@ -79,21 +78,21 @@ struct Facet {
 // destructor lives in between. What it would print goes to a file that keeps nothing.
 class QhullRun {
 public:
-    QhullRun(const std::vector<Vec3>& points, std::string options)
-        : points_(points), qhull_(std::make_unique<qhT>()), nowhere_(open_nowhere()) {
+    // `options` are those of the program qhull, which takes them apart where they are.
+    QhullRun(const std::vector<Vec3>& points, char* options) : points_(points), nowhere_(open_nowhere()) {
         if (!nowhere_ || points.size() > INT_MAX) return;
-        qh_zero(qhull_.get(), nowhere_.get());
+        qh_zero(&qhull_, nowhere_.get());
         // Qhull takes coordinates it may change only with other options than these.
         auto* coordinates = const_cast<coordT*>(&points.front().x);
-        status_ = qh_new_qhull(qhull_.get(), 3, static_cast<int>(points.size()), coordinates, False, options.data(),
-                               nullptr, nowhere_.get());
+        status_ = qh_new_qhull(&qhull_, 3, static_cast<int>(points.size()), coordinates, False, options, nullptr,
+                               nowhere_.get());
         used_ = true;
     }
     ~QhullRun() {
         if (!used_) return;
-        qh_freeqhull(qhull_.get(), !qh_ALL);
+        qh_freeqhull(&qhull_, !qh_ALL);
         int blocks = 0, bytes = 0;
-        qh_memfreeshort(qhull_.get(), &blocks, &bytes);
+        qh_memfreeshort(&qhull_, &blocks, &bytes);
     }
     QhullRun(const QhullRun&) = delete;
     QhullRun& operator=(const QhullRun&) = delete;
@@ -140,7 +139,7 @@ private:
     }
     template <class F>
     void for_each_facet(const F& use) const {
-        for (const facetT* facet = qhull_->facet_list; facet != nullptr && facet->next != nullptr; facet = facet->next)
+        for (const facetT* facet = qhull_.facet_list; facet != nullptr && facet->next != nullptr; facet = facet->next)
             use(facet);
     }
     template <class F>
@@ -153,7 +152,7 @@ private:
     }
 
     const std::vector<Vec3>& points_;
-    std::unique_ptr<qhT> qhull_;
+    qhT qhull_{};
     File nowhere_;
     int status_ = -1;
     bool used_ = false;
@@ -247,7 +246,7 @@ void make_face(const std::vector<Vec3>& points, HullFace& face, int exponent) {
 }
 
 // Facets as Qhull has them; none where it fails.
-std::vector<HullFace> raw_faces(const std::vector<Vec3>& points, const char* options) {
+std::vector<HullFace> raw_faces(const std::vector<Vec3>& points, char* options) {
     const QhullRun run(points, options);
     if (!run.ok()) return {};
     return run.faces();
@@ -279,7 +278,8 @@ std::vector<Vec3> outermost_points(std::vector<Vec3> points) {
         points.end());
     if (points.size() < 5) return points;
     const std::vector<Vec3> scaled = normalized(points).points;
-    const QhullRun run(scaled, "qhull Qc Pp");
+    char options[] = "qhull Qc Pp";
+    const QhullRun run(scaled, options);
     if (!run.ok()) return points;
     std::vector<char> kept(points.size(), 0);
     std::vector<Facet> facets = run.facets(kept);
@@ -297,8 +297,9 @@ std::vector<HullFace> hull_faces(const std::vector<Vec3>& points) {
     const auto [scaled, exponent] = normalized(points);
     // Facets whose middles are within so much of their neighbours' planes are one; some hulls Qhull can only do
     // without.
-    std::vector<HullFace> faces = raw_faces(scaled, "qhull C-1e-6 Pp");
-    if (faces.empty()) faces = raw_faces(scaled, "qhull Pp");
+    char merged[] = "qhull C-1e-6 Pp", all[] = "qhull Pp";
+    std::vector<HullFace> faces = raw_faces(scaled, merged);
+    if (faces.empty()) faces = raw_faces(scaled, all);
     for (HullFace& face : faces) make_face(scaled, face, -exponent);
     faces.erase(
         std::remove_if(faces.begin(), faces.end(), [](const HullFace& face) { return face.corners.size() < 3; }),
