@@ -118,7 +118,7 @@ TEST_CASE("boxes and hulls face to face touch in the corners of what both cover"
             for (const auto& rows : everywhere({a, {}}, {b, above}, 4, 0.0)) check_points(rows, corners, -0.01);
 }
 
-TEST_CASE("boxes that lie on one another crosswise touch in eight points", "[device]") {
+TEST_CASE("boxes that lie on one another crosswise touch in eight points", "[device][builds]") {
     const double r = std::sqrt(2.0) - 1.0;
     std::vector<Vec3> corners;
     for (const double x : {-1.0, 1.0})
@@ -130,7 +130,7 @@ TEST_CASE("boxes that lie on one another crosswise touch in eight points", "[dev
         check_points(rows, corners, -0.25);
 }
 
-TEST_CASE("gaps within the margins have manifolds too", "[device]") {
+TEST_CASE("gaps within the margins have manifolds too", "[device][builds]") {
     const std::vector<Vec3> corners{{-0.5, -0.5, 1}, {-0.5, 0.5, 1}, {0.5, -0.5, 1}, {0.5, 0.5, 1}};
     for (const auto& rows : everywhere({Box{{1, 1, 1}}, {}}, {Box{{0.5, 0.5, 0.5}}, {{0, 0, 1.55}}}, 4, 0.03))
         check_points(rows, corners, 0.05);
