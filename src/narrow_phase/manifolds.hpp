@@ -1,4 +1,5 @@
-// Manifolds of contacts that are found already: cl/narrow_phase/manifold.clh on a device and on the host.
+// Manifolds of contacts that are found already: cl/narrow_phase/manifold.clh and, of two boxes, manifold_boxes.clh, on
+// a device and on the host.
 #pragma once
 
 #include <cstdint>

@@ -62,7 +62,7 @@ struct NarrowPhase::Impl {
     std::unique_ptr<Manifolds> manifolds;
     // Of a bucket, in 32 and 64 bits: for contacts, and for only which pairs touch.
     std::array<std::array<std::array<Kernel, 2>, 2>, 32> kernels;
-    std::array<std::array<std::optional<Plan>, 2>, 32> plans;  // of a bucket for the shapes there are, as kernels
+    std::array<std::array<std::optional<Plan>, 2>, 32> plans;  // of a bucket, as kernels; until shapes change
     bool only_pairs = false;                                   // what the call that is under way asks for
     ContactList contacts;
     std::vector<Pair> touching;
