@@ -80,11 +80,11 @@ TEST_CASE("all algorithms give the oracle's bytes, small", "[device][small]") {
 }
 
 // Apart from the above since oclgrind can check vector code for races and bad accesses only (see tests/oclgrind).
-TEST_CASE("all algorithms give the oracle's bytes, small, in vectors", "[device][vectors]") {
+TEST_CASE("all algorithms give the oracle's bytes, small, in vectors", "[device][builds][vectors]") {
     check_small({4, 16}, 450);
 }
 
-TEST_CASE("all algorithms give the oracle's bytes on every kind of scene", "[device]") {
+TEST_CASE("all algorithms give the oracle's bytes on every kind of scene", "[device][builds]") {
     const std::vector<scenes::BoxKind> kinds = scenes::box_kinds();
     std::vector<std::vector<Aabb>> boxes;
     std::vector<std::vector<Pair>> expected;
@@ -110,7 +110,7 @@ TEST_CASE("10,000 boxes of uniform: the oracle's bytes", "[device]") {
                     [&](BroadPhase& broad_phase) { test::check_scene(broad_phase, boxes, {}, expected); });
 }
 
-TEST_CASE("random sizes of hostile boxes, filtered or not", "[device]") {
+TEST_CASE("random sizes of hostile boxes, filtered or not", "[device][builds]") {
     const std::uint64_t seed = 32;
     test::Random random(seed);
     struct Case {

@@ -109,7 +109,7 @@ void check_steps(detail::Device& device, const std::string& kind, std::size_t n,
 
 }  // namespace
 
-TEST_CASE("pairs kept from step to step are those of a search", "[device]") {
+TEST_CASE("pairs kept from step to step are those of a search", "[device][builds]") {
     for (std::uint32_t i = 0; i < list_devices().size(); ++i) {
         if (!detail::runs_on(detail::algorithm_named("grid"), list_devices()[i])) continue;
         for (const std::uint32_t lanes : {1u, 4u, 8u, 16u}) {
