@@ -2,8 +2,9 @@
 #include "narrow_phase/box_box.clh"
 #define TOUCH touch_box_box
 #define CLASS_A 1u
-#define TURN_A 1
-#define TURN_B 1
+#define SAME_CLASS 1
+#define TURN_A TURN_WHOLE
+#define TURN_B TURN_WHOLE
 #define SIZES_A 3
 #define SIZES_B 3
 #define NORMAL_B 0

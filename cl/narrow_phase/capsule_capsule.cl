@@ -2,8 +2,9 @@
 #include "narrow_phase/capsule_capsule.clh"
 #define TOUCH touch_capsule_capsule
 #define CLASS_A 2u
-#define TURN_A 1
-#define TURN_B 1
+#define SAME_CLASS 1
+#define TURN_A TURN_AXIS
+#define TURN_B TURN_AXIS
 #define SIZES_A 2
 #define SIZES_B 2
 #define NORMAL_B 0

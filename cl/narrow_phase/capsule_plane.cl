@@ -2,8 +2,8 @@
 #include "narrow_phase/capsule_plane.clh"
 #define TOUCH touch_capsule_plane
 #define CLASS_A 2u
-#define TURN_A 1
-#define TURN_B 1
+#define TURN_A TURN_AXIS
+#define TURN_B TURN_WHOLE
 #define SIZES_A 2
 #define SIZES_B 1
 #define NORMAL_B 1

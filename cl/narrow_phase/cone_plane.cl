@@ -2,8 +2,8 @@
 #include "narrow_phase/cone_plane.clh"
 #define TOUCH touch_cone_plane
 #define CLASS_A 4u
-#define TURN_A 1
-#define TURN_B 1
+#define TURN_A TURN_AXIS
+#define TURN_B TURN_WHOLE
 #define SIZES_A 2
 #define SIZES_B 1
 #define NORMAL_B 1

@@ -4,7 +4,7 @@
 #define TOUCH touch_convex
 #if CONVEX_A == 0
 #define CLASS_A 0u
-#define TURN_A 0
+#define TURN_A TURN_NONE
 #elif CONVEX_A == 1
 #define CLASS_A 1u
 #elif CONVEX_A == 2
@@ -16,6 +16,9 @@
 #else
 #define CLASS_A 6u
 #define HULL_A 1
+#endif
+#if CONVEX_A == CONVEX_B
+#define SAME_CLASS 1
 #endif
 #if CONVEX_B == 6
 #define HULL_B 1

@@ -2,8 +2,8 @@
 #include "narrow_phase/cylinder_plane.clh"
 #define TOUCH touch_cylinder_plane
 #define CLASS_A 3u
-#define TURN_A 1
-#define TURN_B 1
+#define TURN_A TURN_AXIS
+#define TURN_B TURN_WHOLE
 #define SIZES_A 2
 #define SIZES_B 1
 #define NORMAL_B 1

@@ -2,8 +2,8 @@
 #include "narrow_phase/plane_hull.clh"
 #define TOUCH touch_plane_hull
 #define CLASS_A 5u
-#define TURN_A 1
-#define TURN_B 1
+#define TURN_A TURN_WHOLE
+#define TURN_B TURN_WHOLE
 #define SIZES_A 1
 #define SIZES_B 0
 #define NORMAL_A 1

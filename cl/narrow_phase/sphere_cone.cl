@@ -2,8 +2,8 @@
 #include "narrow_phase/sphere_cone.clh"
 #define TOUCH touch_sphere_cone
 #define CLASS_A 0u
-#define TURN_A 0
-#define TURN_B 1
+#define TURN_A TURN_NONE
+#define TURN_B TURN_AXIS
 #define SIZES_A 1
 #define SIZES_B 2
 #define NORMAL_B 0

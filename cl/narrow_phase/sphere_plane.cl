@@ -2,8 +2,8 @@
 #include "narrow_phase/sphere_plane.clh"
 #define TOUCH touch_sphere_plane
 #define CLASS_A 0u
-#define TURN_A 0
-#define TURN_B 1
+#define TURN_A TURN_NONE
+#define TURN_B TURN_WHOLE
 #define SIZES_A 1
 #define SIZES_B 1
 #define NORMAL_B 1

@@ -2,8 +2,9 @@
 #include "narrow_phase/sphere_sphere.clh"
 #define TOUCH touch_sphere_sphere
 #define CLASS_A 0u
-#define TURN_A 0
-#define TURN_B 0
+#define SAME_CLASS 1
+#define TURN_A TURN_NONE
+#define TURN_B TURN_NONE
 #define SIZES_A 1
 #define SIZES_B 1
 #define NORMAL_B 0

@@ -10,33 +10,64 @@ namespace {
 
 constexpr std::uint32_t rows_worth_threads = 4096;
 
-// One contact out of columns.
+// Answers in columns, each `stride` floats long, those of float64 with what the floats leave over.
 class Columns {
 public:
-    explicit Columns(const GatheredContacts& from) : from_(from) {}
+    Columns(const void* columns, std::uint64_t stride)
+        : columns_(static_cast<const unsigned char*>(columns)), stride_(stride) {}
 
-    Contact at(std::size_t i) const {
-        Contact c;
-        c.a = from_.words[i];
-        c.b = from_.words[from_.stride + i];
-        c.distance = number(0, 0, i);
+    /// That of row i, but for the bodies' numbers; its points from `origin`.
+    void read(std::size_t i, bool rests, const Vec3& origin, Contact& c) const {
+        const double distance = number(0, 0, i, rests);
+        const double nx = number(2, 1, i, rests), ny = number(3, 2, i, rests), nz = number(4, 3, i, rests);
+        const double x = origin.x + number(5, 4, i, rests), y = origin.y + number(6, 5, i, rests),
+                     z = origin.z + number(7, 6, i, rests);
+        // One number after the other: a struct that is copied would wait for each of its halves.
+        c.feature = 0;
+        c.on_a.x = x;
+        c.on_a.y = y;
+        c.on_a.z = z;
+        c.on_b.x = x + distance * nx;
+        c.on_b.y = y + distance * ny;
+        c.on_b.z = z + distance * nz;
+        c.normal.x = nx;
+        c.normal.y = ny;
+        c.normal.z = nz;
+        c.distance = distance;
         c.error = static_cast<double>(real(1, i));
-        c.normal = {number(2, 1, i), number(3, 2, i), number(4, 3, i)};
-        c.on_a = {number(5, 4, i), number(6, 5, i), number(7, 6, i)};
-        return c;
     }
 
 private:
     float real(std::size_t column, std::size_t i) const {
         float x = 0.0f;
-        std::memcpy(&x, from_.words + (2 + column) * from_.stride + i, sizeof x);
+        std::memcpy(&x, columns_ + (column * stride_ + i) * sizeof x, sizeof x);
         return x;
     }
-    double number(std::size_t column, std::size_t rest, std::size_t i) const {
+    double number(std::size_t column, std::size_t rest, std::size_t i, bool rests) const {
         const auto high = static_cast<double>(real(column, i));
-        return from_.rests ? high + static_cast<double>(real(answer_columns + rest, i)) : high;
+        return rests ? high + static_cast<double>(real(answer_columns + rest, i)) : high;
     }
+    const unsigned char* columns_;
+    std::uint64_t stride_;
+};
+
+// The contacts that Slots::gather left.
+class Gathered {
+public:
+    explicit Gathered(const GatheredContacts& from)
+        : from_(from), columns_(from.words + 2 * from.stride, from.stride) {}
+    /// From a's position.
+    Contact at(std::size_t i) const {
+        Contact c;
+        columns_.read(i, from_.rests, {-0.0, -0.0, -0.0}, c);  // what is added to -0 stays as it is
+        c.a = from_.words[i];
+        c.b = from_.words[from_.stride + i];
+        return c;
+    }
+
+private:
     GatheredContacts from_;
+    Columns columns_;
 };
 
 Contact contact_of(const HostAnswer& answer) {
@@ -65,9 +96,12 @@ const FewPoints& points_of(const std::vector<FewPoints>& points, std::size_t i) 
 
 // From a's position to world space.
 void place(const Vec3& position, Contact& c) {
-    c.on_a = {position.x + c.on_a.x, position.y + c.on_a.y, position.z + c.on_a.z};
-    c.on_b = {c.on_a.x + c.distance * c.normal.x, c.on_a.y + c.distance * c.normal.y,
-              c.on_a.z + c.distance * c.normal.z};
+    c.on_a.x += position.x;
+    c.on_a.y += position.y;
+    c.on_a.z += position.z;
+    c.on_b.x = c.on_a.x + c.distance * c.normal.x;
+    c.on_b.y = c.on_a.y + c.distance * c.normal.y;
+    c.on_b.z = c.on_a.z + c.distance * c.normal.z;
 }
 
 // Numbers of vertices beyond what a name has room for come round again.
@@ -81,7 +115,7 @@ void put_in_order(Contact* contacts, std::size_t count) {
 }  // namespace
 
 std::vector<HostAnswer> answers_of(const GatheredContacts& gathered) {
-    const Columns from(gathered);
+    const Gathered from(gathered);
     std::vector<HostAnswer> answers;
     answers.reserve(gathered.count);
     for (std::size_t i = 0; i < gathered.count; ++i) {
@@ -153,18 +187,51 @@ void ContactList::append_points(const Scene& scene, std::size_t count, const Con
 }
 
 void ContactList::append(const Scene& scene, const GatheredContacts& gathered) {
-    const Columns from(gathered);
+    const Gathered from(gathered);
     append_each(scene, gathered.count, [&](std::size_t i) { return from.at(i); });
 }
 
+void ContactList::append(const Scene& scene, View<const Pair> pairs, const SlotAnswers& answers) {
+    const Columns columns(answers.columns.as<void>(), answers.stride);
+    const std::vector<Vec3>& position = scene.impl().position;
+    const std::size_t parts = (pairs.size() - 1) / rows_worth_threads + 1, per_part = (pairs.size() - 1) / parts + 1;
+    const auto end_of = [&](std::size_t part) { return std::min(pairs.size(), (part + 1) * per_part); };
+    firsts_.assign(parts + 1, 0);
+    const auto last = static_cast<std::ptrdiff_t>(parts);
+#pragma omp parallel for schedule(static) if (parts > 1)
+    for (std::ptrdiff_t p = 0; p < last; ++p) {
+        const auto part = static_cast<std::size_t>(p);
+        std::size_t hits = 0;
+        for (std::size_t i = part * per_part; i < end_of(part); ++i)
+            hits += answers.is_hit(answers.slot_of(i)) ? 1U : 0U;
+        firsts_[part + 1] = hits;
+    }
+    for (std::size_t part = 0; part < parts; ++part) firsts_[part + 1] += firsts_[part];
+    Contact* const list = grow(firsts_[parts]);
+#pragma omp parallel for schedule(static) if (parts > 1)
+    for (std::ptrdiff_t p = 0; p < last; ++p) {
+        const auto part = static_cast<std::size_t>(p);
+        Contact* to = list + firsts_[part];
+        for (std::size_t i = part * per_part; i < end_of(part); ++i) {
+            const std::size_t slot = answers.slot_of(i);
+            if (!answers.is_hit(slot)) continue;
+            const Pair pair = pairs[i];
+            columns.read(slot, answers.rests && answers.is_float64(slot), position[pair.a], *to);
+            to->a = pair.a;
+            to->b = pair.b;
+            ++to;
+        }
+    }
+}
+
 void ContactList::append(const Scene& scene, const GatheredContacts& gathered, const DevicePoints& points) {
-    const Columns from(gathered);
+    const Gathered from(gathered);
     append_points(
         scene, gathered.count, [&](std::size_t i) { return from.at(i); }, points);
 }
 
 void ContactList::append(const Scene& scene, const GatheredContacts& gathered, const std::vector<FewPoints>& points) {
-    const Columns from(gathered);
+    const Gathered from(gathered);
     append_points(
         scene, gathered.count, [&](std::size_t i) { return from.at(i); }, points);
 }

@@ -27,6 +27,8 @@ public:
     void clear() noexcept { size_ = 0; }
     /// Appends the contacts that were gathered.
     void append(const Scene& scene, const GatheredContacts& gathered);
+    /// Appends the hits among the answers of `pairs`.
+    void append(const Scene& scene, View<const Pair> pairs, const SlotAnswers& answers);
     /// Appends their points instead, those of each by ascending features of which no two are equal.
     void append(const Scene& scene, const GatheredContacts& gathered, const DevicePoints& points);
     void append(const Scene& scene, const GatheredContacts& gathered, const std::vector<FewPoints>& points);

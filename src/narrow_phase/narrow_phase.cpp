@@ -74,6 +74,7 @@ struct NarrowPhase::Impl {
     void find_on_device(const Scene& scene, View<const Pair> pairs);
     void do_chunk(const Scene& scene, View<const Pair> pairs);
     void do_bucket(const Scene& scene, View<const Pair> pairs, std::size_t k);
+    void decide(const Scene& scene, View<const Pair> pairs);
     void run(std::size_t k, const BucketSlice& slice, unsigned bits);
     void run_float64(const Scene& scene, std::size_t k, const BucketSlice& slice) {
         on_device->update(scene, shapes, 64);
@@ -81,7 +82,9 @@ struct NarrowPhase::Impl {
         run(k, slice, 64);
     }
     void run_on_host(const Scene& scene, View<const Pair> pairs, const BucketSlice& slice);
-    void gather(const Scene& scene);
+    void gather(const Scene& scene, View<const Pair> pairs);
+    void take_in_place(const Scene& scene, View<const Pair> pairs);
+    void take_gathered(const Scene& scene);
     bool may_have_points() const;
     void append_points(const Scene& scene, const GatheredContacts& gathered);
     Kernel& kernel(std::size_t k, unsigned bits);
@@ -190,28 +193,45 @@ void NarrowPhase::Impl::do_chunk(const Scene& scene, View<const Pair> pairs) {
     const Stopwatch routines;
     for (std::size_t k = 0; k < slots->bucket_count(); ++k)
         if (slots->bucket(k).count > 0) do_bucket(scene, pairs, k);
+    decide(scene, pairs);
     stage_done();
     report.ms.routines += routines.ms();
-    gather(scene);
+    gather(scene, pairs);
 }
 
-void NarrowPhase::Impl::gather(const Scene& scene) {
+void NarrowPhase::Impl::gather(const Scene& scene, View<const Pair> pairs) {
     const Stopwatch watch;
     const double manifolds_before = report.ms.manifolds;
-    const std::uint32_t count = slots->gather(only_pairs);
-    if (count > 0) {
-        const std::uint64_t stride = slots->contact_stride();
-        const Mapping mapping =
-            device().map(slots->contacts(), slots->gathered_columns(only_pairs) * stride * sizeof(std::uint32_t));
-        const GatheredContacts gathered{mapping.as<std::uint32_t>(), stride, count, slots->rests()};
-        if (only_pairs)
-            for (std::size_t i = 0; i < count; ++i) touching.push_back({gathered.words[i], gathered.words[stride + i]});
-        else if (may_have_points())
-            append_points(scene, gathered);
-        else
-            contacts.append(scene, gathered);
-    }
+    if (device().info().unified_memory && !(may_have_points() && !only_pairs))
+        take_in_place(scene, pairs);
+    else
+        take_gathered(scene);
     report.ms.gather += watch.ms() - (report.ms.manifolds - manifolds_before);
+}
+
+void NarrowPhase::Impl::take_in_place(const Scene& scene, View<const Pair> pairs) {
+    const SlotAnswers answers = slots->in_place(only_pairs);
+    if (!only_pairs) {
+        contacts.append(scene, pairs, answers);
+        return;
+    }
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        if (answers.is_hit(answers.slot_of(i))) touching.push_back(pairs[i]);
+}
+
+void NarrowPhase::Impl::take_gathered(const Scene& scene) {
+    const std::uint32_t count = slots->gather(only_pairs);
+    if (count == 0) return;
+    const std::uint64_t stride = slots->contact_stride();
+    const Mapping mapping =
+        device().map(slots->contacts(), slots->gathered_columns(only_pairs) * stride * sizeof(std::uint32_t));
+    const GatheredContacts gathered{mapping.as<std::uint32_t>(), stride, count, slots->rests()};
+    if (only_pairs)
+        for (std::size_t i = 0; i < count; ++i) touching.push_back({gathered.words[i], gathered.words[stride + i]});
+    else if (may_have_points())
+        append_points(scene, gathered);
+    else
+        contacts.append(scene, gathered);
 }
 
 // A sphere touches in one point.
@@ -283,18 +303,24 @@ void NarrowPhase::Impl::do_bucket(const Scene& scene, View<const Pair> pairs, st
     }
     if (options.tolerance) on_device->update(scene, shapes, 32);
     run(k, bucket, 32);
-    const bool alone = level == Level::Fast;
-    report.buckets[k].numbers = alone ? "float32" : "float32, float64";
-    if (alone) return;
-    const BucketSlice open = slots->undecided(bucket);
-    if (open.count == 0) return;
-    report.buckets[k].again += open.count;
-    // For a few the host is done before float64 kernels are built and fed.
-    constexpr std::uint32_t few_pairs = 1024;
-    if (fp64 && open.count > few_pairs)
-        run_float64(scene, k, open);
-    else
-        run_on_host(scene, pairs, open);
+    report.buckets[k].numbers = level == Level::Fast ? "float32" : "float32, float64";
+}
+
+// What float32 has left undecided, in float64.
+void NarrowPhase::Impl::decide(const Scene& scene, View<const Pair> pairs) {
+    if (level == Level::Fast) return;
+    const std::array<std::uint32_t, 32> open = slots->count_undecided();
+    for (std::size_t k = 0; k < slots->bucket_count(); ++k) {
+        if (open[k] == 0 || !in_float32(k)) continue;
+        const BucketSlice again = slots->undecided(k, open[k]);
+        report.buckets[k].again += open[k];
+        // For a few the host is done before float64 kernels are built and fed.
+        constexpr std::uint32_t few_pairs = 1024;
+        if (context.infos[context.primary()].fp64 && open[k] > few_pairs)
+            run_float64(scene, k, again);
+        else
+            run_on_host(scene, pairs, again);
+    }
 }
 
 Kernel& NarrowPhase::Impl::kernel(std::size_t k, unsigned bits) {
@@ -324,7 +350,7 @@ void NarrowPhase::Impl::run(std::size_t k, const BucketSlice& slice, unsigned bi
     touch.args(slots->pairs(), *slice.numbers, slice.listed ? 1u : 0u, slice.first, slice.count, per_item,
                on_device->bodies(bits), on_device->shapes(bits), on_device->vertices(bits), margins,
                with_margins ? 1u : 0u, slots->answers(), slots->stride(), slice.first_slot, tolerance, relative,
-               slots->hits());
+               slots->hits(), slots->undecided_counts(), static_cast<std::uint32_t>(k));
     const std::size_t group = device().group_size();
     device().launch(touch, (items + group - 1) / group, group);
 }

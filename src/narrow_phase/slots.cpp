@@ -13,7 +13,6 @@ namespace {
 constexpr const char* module = "narrow_phase/buckets";
 constexpr std::uint32_t most_buckets = 32;
 constexpr unsigned key_bits = 5;
-constexpr std::uint32_t hit_bit = 1, float64_bit = 4;  // HIT and FLOAT64 of cl/narrow_phase/driver.clh
 
 std::uint32_t in_blocks(std::uint32_t count) {
     return (count + Slots::block - 1) / Slots::block * Slots::block;
@@ -37,7 +36,9 @@ void Slots::group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_
         slots_kernel_ = device_.kernel(module, "bucket_slots");
         table_ = device_.allocate(bucket_table().size(), "the table of buckets");
         device_.write(table_, bucket_table().data(), bucket_table().size());
+        undecided_ = device_.allocate(most_buckets * sizeof(std::uint32_t), "the counts of undecided pairs");
     }
+    device_.clear(undecided_, most_buckets * sizeof(std::uint32_t));
     const std::uint32_t items = runs_for(n_), per_item = (n_ - 1) / items + 1;
     device_.reserve(pairs_, n_ * sizeof(Pair), "the pairs of a chunk");
     device_.reserve(keys_, n_ * sizeof(std::uint32_t), "the buckets of pairs");
@@ -88,13 +89,30 @@ void Slots::number_slots(const std::vector<std::uint64_t>& counts) {
     device_.reserve(first_slots_, most_buckets * sizeof(std::uint32_t), "the slots of buckets");
     device_.write(firsts_, first_pair.data(), first_pair.size() * sizeof(std::uint32_t));
     device_.write(first_slots_, first_slot.data(), first_slot.size() * sizeof(std::uint32_t));
-    if (listed) sort_.sort(keys_, numbers_, n_, key_bits, true);
-    device_.launch_items(slots_kernel_.args(numbers_, listed ? 1u : 0u, n_, firsts_, first_slots_,
-                                            static_cast<std::uint32_t>(first_pair.size()), slot_of_),
-                         n_);
+    buckets_used_ = static_cast<std::uint32_t>(first_pair.size());
+    numbered_ = false;
+    if (!listed) return;
+    sort_.sort(keys_, numbers_, n_, key_bits, true);
+    number_pairs(true);
 }
 
-BucketSlice Slots::undecided(const BucketSlice& bucket) {
+// Writes down the slot of each pair.
+void Slots::number_pairs(bool listed) {
+    if (numbered_) return;
+    device_.launch_items(
+        slots_kernel_.args(numbers_, listed ? 1u : 0u, n_, firsts_, first_slots_, buckets_used_, slot_of_), n_);
+    numbered_ = true;
+}
+
+std::array<std::uint32_t, 32> Slots::count_undecided() {
+    std::array<std::uint32_t, most_buckets> counts{};
+    device_.read(undecided_, counts.data(), sizeof counts);
+    return counts;
+}
+
+BucketSlice Slots::undecided(std::size_t k, std::uint32_t count) {
+    const BucketSlice& bucket = slices_[k];
+    number_pairs(bucket.listed);
     if (!open_count_) {
         open_count_ = device_.kernel(module, "open_count");
         open_fill_ = device_.kernel(module, "open_fill");
@@ -106,8 +124,6 @@ BucketSlice Slots::undecided(const BucketSlice& bucket) {
     const std::size_t group = device_.group_size(), groups = (runs + group - 1) / group;
     device_.launch(open_count_.args(hits_, bucket.first_slot, bucket.count, per_run, runs, run_counts_), groups, group);
     scan_.exclusive(run_counts_, runs, run_offsets_);
-    const std::uint32_t count = scan_.total();
-    if (count == 0) return {};
     // The queue is in order: the next bucket's list is written when this one's has been worked through.
     device_.reserve(open_, n_ * sizeof(std::uint32_t), "the undecided pairs");
     device_.launch(open_fill_.args(hits_, bucket.first_slot, bucket.count, per_run, runs, run_offsets_, numbers_,
@@ -162,6 +178,7 @@ std::uint32_t Slots::gather(bool only_pairs) {
         count_kernel_ = device_.kernel(module, "contact_count");
         gather_kernel_ = device_.kernel(module, "contact_gather");
     }
+    number_pairs(false);
     const std::uint32_t runs = runs_for(n_), per_run = (n_ - 1) / runs + 1;
     device_.reserve(run_counts_, runs * sizeof(std::uint32_t), "the counts of runs");
     device_.reserve(run_offsets_, runs * sizeof(std::uint32_t), "the offsets of runs");
@@ -176,6 +193,18 @@ std::uint32_t Slots::gather(bool only_pairs) {
                                        only_pairs ? 0u : 1u, float64_ ? 1u : 0u, contacts_, contact_stride_),
                    groups, group);
     return count;
+}
+
+SlotAnswers Slots::in_place(bool only_pairs) {
+    SlotAnswers out;
+    out.numbered = numbered_;
+    out.stride = stride_;
+    out.rests = float64_;
+    out.hits = device_.map(hits_, std::size_t{slots_used_} * sizeof(std::uint32_t));
+    if (numbered_) out.slots = device_.map(slot_of_, n_ * sizeof(std::uint32_t));
+    if (!only_pairs)
+        out.columns = device_.map(answers_, stride_ * (answer_columns + (float64_ ? rest_columns : 0)) * sizeof(float));
+    return out;
 }
 
 }  // namespace clinch::detail

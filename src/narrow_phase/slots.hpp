@@ -18,6 +18,9 @@ namespace clinch::detail {
 constexpr std::size_t answer_columns = 8;
 constexpr std::size_t rest_columns = 7;
 
+/// HIT and FLOAT64 of cl/narrow_phase/driver.clh.
+constexpr std::uint32_t hit_bit = 1, float64_bit = 4;
+
 /// An answer in float64, from the host.
 struct HostAnswer {
     std::uint32_t a, b;
@@ -32,6 +35,18 @@ struct BucketSlice {
     std::uint32_t first = 0, count = 0, first_slot = 0;
     bool listed = false;
     const Buffer* numbers = nullptr;
+};
+
+/// The answers of a chunk where they lie, readable on the host while this lives.
+struct SlotAnswers {
+    Mapping hits, slots, columns;
+    bool numbered = false;  ///< else the slot of a pair is its own number
+    std::uint64_t stride = 0;
+    bool rests = false;  ///< some are float64
+
+    std::size_t slot_of(std::size_t pair) const { return numbered ? slots.as<std::uint32_t>()[pair] : pair; }
+    bool is_hit(std::size_t slot) const { return (hits.as<std::uint32_t>()[slot] & hit_bit) != 0; }
+    bool is_float64(std::size_t slot) const { return (hits.as<std::uint32_t>()[slot] & float64_bit) != 0; }
 };
 
 /// Groups a chunk of pairs by bucket and puts the answers back into their order. Its memory is a few bytes a pair and
@@ -53,9 +68,13 @@ public:
     const BucketSlice& bucket(std::size_t k) const { return slices_[k]; }
     std::size_t bucket_count() const { return slices_.size(); }
 
-    /// Of the bucket, the pairs whose answers are undecided, as a slice with slots of its own, which take the place of
-    /// the old ones. Waits.
-    BucketSlice undecided(const BucketSlice& bucket);
+    /// Where a routine adds up how many of the answers of bucket k are undecided, at k.
+    const Buffer& undecided_counts() const { return undecided_; }
+    /// What was added up so far, of each bucket. Waits.
+    std::array<std::uint32_t, 32> count_undecided();
+    /// The pairs of bucket k whose answers are undecided, `count` of them, as a slice with slots of its own, which take
+    /// the place of the old ones.
+    BucketSlice undecided(std::size_t k, std::uint32_t count);
     /// Stores answers of the host in the slots of a slice, one a pair.
     void put(const BucketSlice& slice, const std::vector<HostAnswer>& answers);
     /// Numbers of a slice's pairs, on the host. Waits.
@@ -76,6 +95,8 @@ public:
         return 2 + (only_pairs ? 0 : answer_columns + (float64_ ? rest_columns : 0));
     }
     bool rests() const noexcept { return float64_; }
+    /// The answers in place, for a host that shares the device's memory. Waits.
+    SlotAnswers in_place(bool only_pairs);
     const Buffer& contacts() const { return contacts_; }
     std::uint64_t contact_stride() const { return contact_stride_; }
 
@@ -83,17 +104,18 @@ private:
     std::uint32_t runs_for(std::uint32_t count) const;
     [[noreturn]] void throw_no_bucket(View<const Pair> pairs);
     void number_slots(const std::vector<std::uint64_t>& counts);
+    void number_pairs(bool listed);
 
     Device& device_;
     RadixSort sort_;
     Scan scan_;
     Kernel keys_kernel_, slots_kernel_, open_count_, open_fill_, open_slots_, count_kernel_, gather_kernel_;
     Buffer pairs_, table_, keys_, counts_, numbers_, firsts_, first_slots_, slot_of_, hits_, answers_, open_;
-    Buffer run_counts_, run_offsets_, contacts_;
+    Buffer run_counts_, run_offsets_, undecided_, contacts_;
     std::vector<BucketSlice> slices_;
-    std::uint32_t n_ = 0, slots_used_ = 0;
+    std::uint32_t n_ = 0, slots_used_ = 0, buckets_used_ = 0;
     std::uint64_t stride_ = 0, contact_stride_ = 0;
-    bool with_rests_ = false, float64_ = false;
+    bool with_rests_ = false, float64_ = false, numbered_ = false;
 };
 
 }  // namespace clinch::detail
