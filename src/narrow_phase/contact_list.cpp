@@ -104,12 +104,41 @@ void place(const Vec3& position, Contact& c) {
     c.on_b.z = c.on_a.z + c.distance * c.normal.z;
 }
 
-// Numbers of vertices beyond what a name has room for come round again.
-void put_in_order(Contact* contacts, std::size_t count) {
-    const auto before = [](const Contact& p, const Contact& q) { return p.feature < q.feature; };
-    std::sort(contacts, contacts + count, before);
-    for (std::size_t i = 1; i < count; ++i)
-        if (contacts[i].feature <= contacts[i - 1].feature) contacts[i].feature = contacts[i - 1].feature + 1;
+// Numbers of the points, by features.
+struct PointOrder {
+    std::uint32_t at[most_points];
+
+    explicit PointOrder(const FewPoints& few) {
+        for (std::uint32_t k = 0; k < few.count; ++k) {
+            std::uint32_t to = k;
+            for (; to > 0 && few.points[at[to - 1]].feature > few.points[k].feature; --to) at[to] = at[to - 1];
+            at[to] = k;
+        }
+    }
+};
+
+// Writes the points of a contact, number by number.
+void put_points(const Contact& whole, const FewPoints& few, const Vec3& position, Contact* to) {
+    const PointOrder order(few);
+    for (std::uint32_t j = 0; j < few.count; ++j) {
+        const std::uint32_t k = order.at[j];
+        const ManifoldPoint& point = few.points[k];
+        const bool deepest = k == few.deepest, witness = deepest && few.is_witness;
+        Contact& c = to[j];
+        c.a = whole.a;
+        c.b = whole.b;
+        // Numbers of vertices beyond what a name has room for come round again.
+        c.feature = j > 0 && point.feature <= to[j - 1].feature ? to[j - 1].feature + 1 : point.feature;
+        c.on_a.x = witness ? whole.on_a.x : point.on_a[0];
+        c.on_a.y = witness ? whole.on_a.y : point.on_a[1];
+        c.on_a.z = witness ? whole.on_a.z : point.on_a[2];
+        c.normal.x = whole.normal.x;
+        c.normal.y = whole.normal.y;
+        c.normal.z = whole.normal.z;
+        c.distance = deepest ? whole.distance : point.distance;
+        c.error = deepest ? whole.error : point.error;
+        place(position, c);
+    }
 }
 
 }  // namespace
@@ -168,21 +197,7 @@ void ContactList::append_points(const Scene& scene, std::size_t count, const Con
     for (std::ptrdiff_t i = 0; i < end; ++i) {
         const auto at = static_cast<std::size_t>(i);
         const Contact whole = contact_at(at);
-        const FewPoints few = points_of(points, at);
-        Contact* const to = list + firsts_[at];
-        for (std::size_t k = 0; k < few.count; ++k) {
-            const ManifoldPoint& point = few.points[k];
-            Contact c = whole;
-            c.feature = point.feature;
-            if (k != few.deepest || !few.is_witness) c.on_a = {point.on_a[0], point.on_a[1], point.on_a[2]};
-            if (k != few.deepest) {
-                c.distance = point.distance;
-                c.error = point.error;
-            }
-            place(position[c.a], c);
-            to[k] = c;
-        }
-        put_in_order(to, few.count);
+        put_points(whole, points_of(points, at), position[whole.a], list + firsts_[at]);
     }
 }
 

@@ -124,7 +124,7 @@ void Manifolds::find(const NarrowScene& scene, const Slots& slots, const Contact
                      unsigned bits, std::uint32_t wanted, DevicePoints& out) {
     const auto boxes = static_cast<std::uint32_t>(kinds.boxes.size()),
                others = static_cast<std::uint32_t>(kinds.others.size());
-    stride_ = std::max<std::uint64_t>(stride_, boxes + others);
+    stride_ = std::max(stride_, column_stride(boxes + others));
     device_.reserve(points_, stride_ * wanted * point_columns * (bits / 8), "the points of manifolds");
     device_.reserve(features_, stride_ * wanted * sizeof(std::uint32_t), "the features of manifolds");
     device_.reserve(counts_, stride_ * sizeof(std::uint32_t), "the counts of manifolds' points");

@@ -18,6 +18,12 @@ namespace clinch::detail {
 constexpr std::size_t answer_columns = 8;
 constexpr std::size_t rest_columns = 7;
 
+/// How long columns of `rows` are made: a multiple of 16, and never of a power of two that would lead a cache to keep
+/// what many columns hold of one row in the same few places.
+constexpr std::uint64_t column_stride(std::uint64_t rows) {
+    return (rows / 1024 + 1) * 1024 + 48;
+}
+
 /// HIT and FLOAT64 of cl/narrow_phase/driver.clh.
 constexpr std::uint32_t hit_bit = 1, float64_bit = 4;
 
