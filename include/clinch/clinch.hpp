@@ -15,3 +15,4 @@
 #include "clinch/shape.hpp"
 #include "clinch/version.hpp"
 #include "clinch/view.hpp"
+#include "clinch/warm_start.hpp"

@@ -13,6 +13,7 @@
 #include "clinch/context.hpp"
 #include "clinch/scene.hpp"
 #include "clinch/view.hpp"
+#include "clinch/warm_start.hpp"
 
 namespace clinch {
 
@@ -60,6 +61,7 @@ struct NarrowReport {
     std::uint64_t pairs = 0;     ///< candidates looked at
     std::uint64_t contacts = 0;  ///< rows of the result
     std::uint64_t tolerance_missed = 0;
+    std::uint64_t warm = 0;           ///< pairs that started from what a WarmStart had kept of them
     std::uint64_t cells_skipped = 0;  ///< cells of the matrix without a pair: nothing built, allocated or launched
     std::vector<BucketReport> buckets;
     NarrowTimes ms;
@@ -79,13 +81,15 @@ public:
     /// within its error, in the order of `pairs`: ascending if those are; those of one pair by ascending feature. A
     /// pair of a body that is not there or rejected, of two planes, or with a mesh, is InvalidArgument. Valid until the
     /// next call or the end of this object. Throws Error; then there is no result.
-    View<const Contact> find(const Scene& scene, View<const Pair> pairs);
+    /// `warm`: what the last call has left of these pairs, and what this one leaves; it is cleared by an error. Fewer
+    /// than 128 pairs, which the host does, are done without.
+    View<const Contact> find(const Scene& scene, View<const Pair> pairs, WarmStart* warm = nullptr);
 
     /// Only which of `pairs` touch, or are within the margins of the two bodies: those of which find() has contacts,
     /// for less, as no depth, normal or point is computed; of pairs that lie within their error of the margins find()
     /// may have one and this not, or the other way round, unless both are sure. Otherwise as find(); the pairs, in
     /// order.
-    View<const Pair> touching(const Scene& scene, View<const Pair> pairs);
+    View<const Pair> touching(const Scene& scene, View<const Pair> pairs, WarmStart* warm = nullptr);
 
     const NarrowReport& report() const noexcept;
 

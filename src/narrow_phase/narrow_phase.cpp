@@ -19,6 +19,7 @@
 #include "src/narrow_phase/matrix.hpp"
 #include "src/narrow_phase/narrow_scene.hpp"
 #include "src/narrow_phase/slots.hpp"
+#include "src/narrow_phase/warm_start_impl.hpp"
 
 namespace clinch {
 namespace {
@@ -60,19 +61,25 @@ struct NarrowPhase::Impl {
     std::unique_ptr<NarrowScene> on_device;
     std::unique_ptr<Slots> slots;
     std::unique_ptr<Manifolds> manifolds;
-    // Of a bucket, in 32 and 64 bits: for contacts, and for only which pairs touch.
-    std::array<std::array<std::array<Kernel, 2>, 2>, 32> kernels;
+    // Of a bucket, in 32 and 64 bits: for contacts, and for only which pairs touch; from nothing, and warm.
+    std::array<std::array<std::array<std::array<Kernel, 2>, 2>, 2>, 32> kernels;
     std::array<std::array<std::optional<Plan>, 2>, 32> plans;  // of a bucket, as kernels; until shapes change
     bool only_pairs = false;                                   // what the call that is under way asks for
+    WarmStart::Impl* warm = nullptr;                           // its own, if it may use one
+    Buffer corners;                                            // of the pairs of a chunk
     ContactList contacts;
     std::vector<Pair> touching;
     NarrowReport report;
 
-    void find(const Scene& scene, View<const Pair> pairs, bool touching_only);
+    void find(const Scene& scene, View<const Pair> pairs, bool touching_only, WarmStart* from);
     bool worth_a_device(std::size_t pairs) const;
     void find_on_host(const Scene& scene, View<const Pair> pairs);
     void find_on_device(const Scene& scene, View<const Pair> pairs);
-    void do_chunk(const Scene& scene, View<const Pair> pairs);
+    void do_chunk(const Scene& scene, View<const Pair> pairs, std::size_t first);
+    bool starts_warm(std::size_t k) const {
+        return warm != nullptr && !matrix()[k].lanes && matrix()[k].a != plane_class;
+    }
+    bool any_starts_warm() const;
     void do_bucket(const Scene& scene, View<const Pair> pairs, std::size_t k);
     void decide(const Scene& scene, View<const Pair> pairs);
     void run(std::size_t k, const BucketSlice& slice, unsigned bits);
@@ -104,9 +111,10 @@ bool NarrowPhase::Impl::worth_a_device(std::size_t pairs) const {
     return context.infos[context.primary()].fp64 || level != Level::Exact;
 }
 
-void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs, bool touching_only) {
+void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs, bool touching_only, WarmStart* from) {
     const Stopwatch total;
     only_pairs = touching_only;
+    warm = from != nullptr && worth_a_device(pairs.size()) ? &from->impl() : nullptr;
     contacts.clear();
     touching.clear();
     report = NarrowReport{};
@@ -127,6 +135,7 @@ void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs, bool to
     } catch (...) {
         contacts.clear();
         touching.clear();
+        if (from != nullptr) from->clear();
         if (on_device) on_device->forget();
         throw;
     }
@@ -179,21 +188,35 @@ void NarrowPhase::Impl::find_on_device(const Scene& scene, View<const Pair> pair
     const Stopwatch upload;
     on_device->update_classes(scene, shapes);
     if (!options.tolerance) on_device->update(scene, shapes, level == Level::Exact ? 64 : 32);
+    if (warm != nullptr) report.warm = warm->take(pairs);
     stage_done();
     report.ms.upload += upload.ms();
     for (std::size_t first = 0; first < pairs.size(); first += Slots::chunk_pairs)
-        do_chunk(scene, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)});
+        do_chunk(scene, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)}, first);
 }
 
-void NarrowPhase::Impl::do_chunk(const Scene& scene, View<const Pair> pairs) {
+bool NarrowPhase::Impl::any_starts_warm() const {
+    for (std::size_t k = 0; k < slots->bucket_count(); ++k)
+        if (slots->bucket(k).count > 0 && starts_warm(k)) return true;
+    return false;
+}
+
+// Those from number `first` on.
+void NarrowPhase::Impl::do_chunk(const Scene& scene, View<const Pair> pairs, std::size_t first) {
     const Stopwatch group;
     slots->group(pairs, *on_device, static_cast<std::uint32_t>(scene.row_count()), level != Level::Fast);
     stage_done();
     report.ms.buckets += group.ms();
     const Stopwatch routines;
+    const std::size_t corner_bytes = any_starts_warm() ? pairs.size() * sizeof(WarmStart::Impl::Corners) : 0;
+    if (corner_bytes > 0) {
+        device().reserve(corners, corner_bytes, "the corners that pairs start from");
+        device().write(corners, warm->corners.data() + first, corner_bytes);
+    }
     for (std::size_t k = 0; k < slots->bucket_count(); ++k)
         if (slots->bucket(k).count > 0) do_bucket(scene, pairs, k);
     decide(scene, pairs);
+    if (corner_bytes > 0) device().read(corners, warm->corners.data() + first, corner_bytes);
     stage_done();
     report.ms.routines += routines.ms();
     gather(scene, pairs);
@@ -324,11 +347,12 @@ void NarrowPhase::Impl::decide(const Scene& scene, View<const Pair> pairs) {
 }
 
 Kernel& NarrowPhase::Impl::kernel(std::size_t k, unsigned bits) {
-    Kernel& kernel = kernels[k][bits == 64 ? 1 : 0][only_pairs ? 1 : 0];
+    Kernel& kernel = kernels[k][bits == 64 ? 1 : 0][only_pairs ? 1 : 0][starts_warm(k) ? 1 : 0];
     if (kernel) return kernel;
     const MatrixRow& row = matrix()[k];
     const std::string defines = std::string(row.defines) + number_defines(context.infos[context.primary()], bits) +
-                                (row.lanes ? "" : " -DPAIR_LANES=1") + (only_pairs ? " -DONLY_TOUCHING" : "");
+                                (row.lanes ? "" : " -DPAIR_LANES=1") + (only_pairs ? " -DONLY_TOUCHING" : "") +
+                                (starts_warm(k) ? " -DWARM_START" : "");
     kernel = device().kernel(row.module, "touch_pairs", defines);
     return kernel;
 }
@@ -351,6 +375,7 @@ void NarrowPhase::Impl::run(std::size_t k, const BucketSlice& slice, unsigned bi
                on_device->bodies(bits), on_device->shapes(bits), on_device->vertices(bits), margins,
                with_margins ? 1u : 0u, slots->answers(), slots->stride(), slice.first_slot, tolerance, relative,
                slots->hits(), slots->undecided_counts(), static_cast<std::uint32_t>(k));
+    if (starts_warm(k)) touch.args_from(19, corners);
     const std::size_t group = device().group_size();
     device().launch(touch, (items + group - 1) / group, group);
 }
@@ -368,13 +393,13 @@ NarrowPhase::~NarrowPhase() = default;
 NarrowPhase::NarrowPhase(NarrowPhase&& other) noexcept = default;
 NarrowPhase& NarrowPhase::operator=(NarrowPhase&& other) noexcept = default;
 
-View<const Contact> NarrowPhase::find(const Scene& scene, View<const Pair> pairs) {
-    impl_->find(scene, pairs, false);
+View<const Contact> NarrowPhase::find(const Scene& scene, View<const Pair> pairs, WarmStart* warm) {
+    impl_->find(scene, pairs, false, warm);
     return impl_->contacts.view();
 }
 
-View<const Pair> NarrowPhase::touching(const Scene& scene, View<const Pair> pairs) {
-    impl_->find(scene, pairs, true);
+View<const Pair> NarrowPhase::touching(const Scene& scene, View<const Pair> pairs, WarmStart* warm) {
+    impl_->find(scene, pairs, true, warm);
     return impl_->touching;
 }
 
