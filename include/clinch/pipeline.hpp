@@ -19,6 +19,8 @@ struct PipelineOptions {
     /// Find the contacts of the pairs, too. Off: no narrow phase, and nothing of it is built, allocated or sent.
     bool contacts = false;
     NarrowPhaseOptions narrow_phase;
+    /// Start the narrow phase of each step from what decided the pairs in the last one: see WarmStart.
+    bool warm_start = false;
 };
 
 /// What a step found. Views are valid until the pipeline's next step or its end.
@@ -65,6 +67,9 @@ public:
     /// listed in the report. With PipelineOptions::contacts a pair with a mesh is InvalidArgument. Throws Error; the
     /// next step then starts afresh.
     const StepResult& step(const Scene& scene);
+
+    /// Forgets what PipelineOptions::warm_start has kept: the next step that finds contacts anew does so from nothing.
+    void drop_warm_start() noexcept;
 
 private:
     std::unique_ptr<StepResult::Impl> impl_;

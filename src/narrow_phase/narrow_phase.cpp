@@ -76,10 +76,8 @@ struct NarrowPhase::Impl {
     void find_on_host(const Scene& scene, View<const Pair> pairs);
     void find_on_device(const Scene& scene, View<const Pair> pairs);
     void do_chunk(const Scene& scene, View<const Pair> pairs, std::size_t first);
-    bool starts_warm(std::size_t k) const {
-        return warm != nullptr && !matrix()[k].lanes && matrix()[k].a != plane_class;
-    }
-    bool any_starts_warm() const;
+    bool starts_warm(std::size_t k);
+    bool any_starts_warm();
     void do_bucket(const Scene& scene, View<const Pair> pairs, std::size_t k);
     void decide(const Scene& scene, View<const Pair> pairs);
     void run(std::size_t k, const BucketSlice& slice, unsigned bits);
@@ -195,7 +193,14 @@ void NarrowPhase::Impl::find_on_device(const Scene& scene, View<const Pair> pair
         do_chunk(scene, {pairs.data() + first, std::min(Slots::chunk_pairs, pairs.size() - first)}, first);
 }
 
-bool NarrowPhase::Impl::any_starts_warm() const {
+// Whether the cell has iterations, and a device does them.
+bool NarrowPhase::Impl::starts_warm(std::size_t k) {
+    const MatrixRow& row = matrix()[k];
+    return warm != nullptr && !row.lanes && row.a != plane_class &&
+           (in_float32(k) || context.infos[context.primary()].fp64);
+}
+
+bool NarrowPhase::Impl::any_starts_warm() {
     for (std::size_t k = 0; k < slots->bucket_count(); ++k)
         if (slots->bucket(k).count > 0 && starts_warm(k)) return true;
     return false;

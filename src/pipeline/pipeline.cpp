@@ -18,6 +18,7 @@ struct StepResult::Impl {
         : broad(context, without_events(options.broad_phase)),
           measure(options.broad_phase.measure_stages),
           tell_events(options.broad_phase.events),
+          starts_warm(options.warm_start),
           result(*this) {
         detail::check_options(context.impl(), options.broad_phase);
         if (options.contacts) narrow.emplace(context, options.narrow_phase);
@@ -29,7 +30,7 @@ struct StepResult::Impl {
     }
 
     BroadPhase broad;
-    bool measure, tell_events;
+    bool measure, tell_events, starts_warm;
     detail::PairEvents events;
     std::optional<detail::DeviceBounds> device_bounds;
     std::optional<detail::HostBounds> host_bounds;
@@ -48,6 +49,7 @@ struct StepResult::Impl {
     std::size_t rows = 0;
     std::optional<std::vector<Aabb>> boxes_read;
     std::optional<NarrowPhase> narrow;  // if contacts are asked for
+    WarmStart kept;                     // if they start warm
     View<const Contact> contacts;
     NarrowReport narrow_report;
     std::uint64_t most_contacts = 0;
@@ -73,6 +75,7 @@ void StepResult::Impl::start_afresh() {
     pairs = {};
     contacts = {};
     narrow_report = {};
+    kept.clear();
     merged.clear();
     boxes_read.reset();
     rows = 0;
@@ -164,7 +167,7 @@ bool StepResult::Impl::nothing_changed(const Scene& scene) const {
 }
 
 void StepResult::Impl::find_contacts(const Scene& scene) {
-    contacts = narrow->find(scene, pairs);
+    contacts = narrow->find(scene, pairs, starts_warm ? &kept : nullptr);
     narrow_report = narrow->report();
     report.contacts = contacts.size();
     report.tolerance_missed = narrow_report.tolerance_missed;
@@ -259,6 +262,10 @@ Pipeline::Pipeline(Context& context, const PipelineOptions& options)
 Pipeline::~Pipeline() = default;
 Pipeline::Pipeline(Pipeline&& other) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&& other) noexcept = default;
+
+void Pipeline::drop_warm_start() noexcept {
+    impl_->kept.clear();
+}
 
 const StepResult& Pipeline::step(const Scene& scene) {
     try {

@@ -1,7 +1,7 @@
 // Every cell of the matrix on hostile pairs, each answer looked at by certificates.
 //   clinch_tests "[.campaign]"      with CLINCH_CAMPAIGN_PAIRS pairs a cell (1,000,000), of the cells that
 //                                   CLINCH_CAMPAIGN_CELLS names ("box-box cone-hull"; all), from CLINCH_CAMPAIGN_SEED
-//                                   (1)
+//                                   (1); with CLINCH_CAMPAIGN_WARM=1 started warm, from corners of other shapes
 #include <catch2/catch.hpp>
 #include <cstdio>
 #include <cstdlib>
@@ -26,7 +26,8 @@ constexpr double wide = 1e30;  // margins that every gap is within
 /// The three ways to ask, each with what it keeps between calls.
 class Asker {
 public:
-    explicit Asker(Context& context) {
+    /// `warm`: pairs start from what they were decided by when they were others.
+    explicit Asker(Context& context, bool warm = false) : warm_(warm) {
         for (const Asked asked : all_asked) {
             NarrowPhaseOptions options;
             options.precision = precision_of(asked);
@@ -45,7 +46,8 @@ public:
                 const std::vector<double> none(scene.row_count(), 0.0);
                 scene.set_margins(none.data(), none.size());
             }
-            for (const Contact& c : phases_[static_cast<std::size_t>(asked)].find(scene, pairs))
+            for (const Contact& c :
+                 phases_[static_cast<std::size_t>(asked)].find(scene, pairs, warm_ ? &kept_ : nullptr))
                 answers[c.a / 2][asked] = &c;
         }
         return answers;
@@ -53,6 +55,8 @@ public:
 
 private:
     std::vector<NarrowPhase> phases_;
+    bool warm_;
+    WarmStart kept_;
 };
 
 void judge_batch(const Batch& batch, const std::vector<Answers>& answers, std::uint64_t seed, Tallies& tallies) {
@@ -127,7 +131,7 @@ TEST_CASE("the campaign: as many hostile pairs of every cell as are asked for", 
     std::printf("seed %llu\n%-18s %3s %9s %9s %7s %8s %9s %9s %9s %9s\n", static_cast<unsigned long long>(seed), "cell",
                 "at", "pairs", "proved", "broken", "used", "off", "promise", "regret", "witness");
     Context context = test::with_lanes(0, list_devices()[0].lanes);
-    Asker asker(context);
+    Asker asker(context, number_from("CLINCH_CAMPAIGN_WARM", 0) != 0);
     for (const detail::MatrixRow& row : detail::matrix()) {
         const std::string classes = detail::classes_text(row);
         if (!chosen.empty() && chosen.find(' ' + classes + ' ') == std::string::npos) continue;
