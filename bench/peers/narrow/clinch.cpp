@@ -21,20 +21,21 @@ double margin_for(const Batch& batch, Question question) {
 
 class Clinch : public Peer {
 public:
-    Clinch(const Batch& batch, Question question, double precision, std::uint32_t points)
+    Clinch(const Batch& batch, Question question, const Way& way)
         : scene_(scene_of(batch, margin_for(batch, question))),
           only_touching_(question == Question::Touching),
-          narrow_phase_(context_, options_of(precision, points, false)),
-          in_stages_(context_, options_of(precision, points, true)),
+          warm_(way.warm),
+          narrow_phase_(context_, options_of(way.precision, way.points, false)),
+          in_stages_(context_, options_of(way.precision, way.points, true)),
           answers_(batch.pairs()) {
         for (std::uint32_t i = 0; i < batch.pairs(); ++i) pairs_.push_back({2 * i, 2 * i + 1});
     }
 
     void run() override {
         if (only_touching_)
-            touching_ = narrow_phase_.touching(scene_, pairs_);
+            touching_ = narrow_phase_.touching(scene_, pairs_, kept());
         else
-            contacts_ = narrow_phase_.find(scene_, pairs_);
+            contacts_ = narrow_phase_.find(scene_, pairs_, kept());
     }
 
     // A pair's deepest contact counts.
@@ -58,16 +59,19 @@ public:
 
     double routines_ms() override {
         if (only_touching_)
-            in_stages_.touching(scene_, pairs_);
+            in_stages_.touching(scene_, pairs_, kept());
         else
-            in_stages_.find(scene_, pairs_);
+            in_stages_.find(scene_, pairs_, kept());
         return in_stages_.report().ms.routines + in_stages_.report().ms.manifolds;
     }
 
 private:
+    WarmStart* kept() { return warm_ ? &kept_ : nullptr; }
+
     Context context_;
     Scene scene_;
-    bool only_touching_;
+    bool only_touching_, warm_;
+    WarmStart kept_;
     NarrowPhase narrow_phase_, in_stages_;
     std::vector<Pair> pairs_;
     View<const Contact> contacts_;
@@ -77,9 +81,9 @@ private:
 
 }  // namespace
 
-std::unique_ptr<Peer> make_clinch(const Batch& batch, Question question, double precision, std::uint32_t points) {
-    if (points > 1 && question != Question::Contact) return nullptr;
-    return std::make_unique<Clinch>(batch, question, precision, points);
+std::unique_ptr<Peer> make_clinch(const Batch& batch, Question question, const Way& way) {
+    if (way.points > 1 && question != Question::Contact) return nullptr;
+    return std::make_unique<Clinch>(batch, question, way);
 }
 
 }  // namespace clinch::peers::narrow

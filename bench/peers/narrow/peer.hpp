@@ -58,6 +58,13 @@ protected:
     std::vector<Answer> answers_;
 };
 
+/// How clinch is asked.
+struct Way {
+    double precision;
+    std::uint32_t points = 1;
+    bool warm = false;  ///< from what the run before has left
+};
+
 enum class Group { Clinch, Library, Yardstick };
 
 struct PeerRow {

@@ -2,7 +2,7 @@
 
 namespace clinch::peers::narrow {
 
-std::unique_ptr<Peer> make_clinch(const Batch& batch, Question question, double precision, std::uint32_t points);
+std::unique_ptr<Peer> make_clinch(const Batch& batch, Question question, const Way& way);
 std::unique_ptr<Peer> make_copy(const Batch& batch, Question question);
 #ifdef CLINCH_PEER_LIBCCD
 std::unique_ptr<Peer> make_libccd_gjk(const Batch& batch, Question question);
@@ -45,21 +45,20 @@ const Make ode = make_ode;
 const Make ode;
 #endif
 
-Make clinch_of(double precision, std::uint32_t points = 1) {
-    return [precision, points](const Batch& batch, Question question) {
-        return make_clinch(batch, question, precision, points);
-    };
+Make clinch_of(const Way& way) {
+    return [way](const Batch& batch, Question question) { return make_clinch(batch, question, way); };
 }
 
 }  // namespace
 
 std::vector<PeerRow> peer_rows() {
     return {
-        {"clinch", Group::Clinch, true, "", clinch_of(0.5)},
-        {"clinch/all-cores", Group::Clinch, false, "", clinch_of(0.5)},
-        {"clinch/fast", Group::Clinch, true, "", clinch_of(0.0)},
-        {"clinch/points", Group::Clinch, true, "", clinch_of(0.5, 4)},
-        {"clinch/exact", Group::Clinch, true, "", clinch_of(1.0)},
+        {"clinch", Group::Clinch, true, "", clinch_of({0.5})},
+        {"clinch/all-cores", Group::Clinch, false, "", clinch_of({0.5})},
+        {"clinch/fast", Group::Clinch, true, "", clinch_of({0.0})},
+        {"clinch/points", Group::Clinch, true, "", clinch_of({0.5, 4})},
+        {"clinch/exact", Group::Clinch, true, "", clinch_of({1.0})},
+        {"clinch/warm", Group::Clinch, true, "", clinch_of({0.5, 1, true})},
         {"fcl-libccd", Group::Library, true, "libfcl-dev", fcl_libccd},
         {"fcl-indep", Group::Library, true, "libfcl-dev", fcl_indep},
         {"libccd-gjk", Group::Library, true, "libccd-dev", libccd_gjk},
