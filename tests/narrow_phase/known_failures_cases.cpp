@@ -53,6 +53,13 @@ Quat product(const Quat& a, const Quat& b) {
             a.w * b.y - a.x * b.z + a.y * b.w + a.z * b.x, a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w};
 }
 
+// No farther from the body's origin than anything of the body, to rounding.
+void check_point(const Shape& shape, const Pose& at, const Vec3& point, double rounded) {
+    if (std::holds_alternative<Plane>(shape)) return;
+    const Vec3& p = at.position;
+    CHECK(length({point.x - p.x, point.y - p.y, point.z - p.z}) <= reach_of(shape) + rounded);
+}
+
 void check_answer(const Case& c, const Contact& answer, double precision) {
     const double size = size_of(c), exact = std::min(1e-36, size);
     INFO(c.what << ", precision " << precision << ": distance " << answer.distance << " is " << c.distance << ", error "
@@ -64,6 +71,9 @@ void check_answer(const Case& c, const Contact& answer, double precision) {
     const double far = in_float64 ? 0 : 0x1p-43 * (length(c.at_a.position) + length(c.at_b.position));
     CHECK(answer.error <= (in_float64 ? c.error : c.error32) * size + far + 4e-37 + exact);
     CHECK(std::fabs(length(answer.normal) - 1) < 1e-6);
+    const double points = 1e-5 * size + far + 2 * answer.error + rounded + 4e-37;
+    check_point(c.a, c.at_a, answer.on_a, points);
+    check_point(c.b, c.at_b, answer.on_b, points);
     if (c.normals.empty()) return;
     double best = -1;
     for (const Vec3& n : c.normals)

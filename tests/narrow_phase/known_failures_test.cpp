@@ -427,3 +427,28 @@ TEST_CASE("known failures: rotations a little off unit length are those of unit 
     cases.push_back({"capsule, plane", Capsule{1, 1}, {{0, 0, 2.5}, at.rotation}, Plane{}, {}, 0.5, {{0, 0, -1}}});
     check(cases);
 }
+
+TEST_CASE("known failures: what rounding bends out of shape", "[device][builds]") {
+    std::vector<Case> cases;
+    // Seen all but along its axis, a disc's rim lies where squares of floats vanish.
+    cases.push_back({"capsule at a cylinder's side",
+                     Cylinder{1.8568579257896143, 3},
+                     {},
+                     Capsule{0.0088032862417779089, 1.7019984996987116e-05},
+                     {{-1.8568579257896138, 0, -0.03241402193471752},
+                      {6.1232339779452335e-17, -7.6230934362572469e-05, 0.99999999709442233, -4.6677984881568176e-21}},
+                     -0.0088032862417779089,
+                     {},
+                     1e-9});
+    // A simplex that claims to enclose the origin is a sliver, and the point its parts make is far from it.
+    cases.push_back({"capsule on a thin box",
+                     Box{{3, 0.010357611921627829, 1.1824211487948961}},
+                     {{61820.957026902557, 34857.129672647185, -3229113.1596183698},
+                      {-0.89627244940157913, -0.14796268983371652, 0.36711452708387143, -0.20007414341901095}},
+                     Capsule{0.0026317493885038012, 0.0026317493885038012},
+                     {{61823.618808866901, 34858.35653523072, -3229111.8199922098},
+                      {-0.89622817349164707, -0.14832695662853307, 0.36700011758365042, -0.20021260867070789}},
+                     -0.00263179146203,
+                     {}});
+    check(cases);
+}
