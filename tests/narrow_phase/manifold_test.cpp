@@ -15,6 +15,7 @@
 #include "tests/narrow_phase/surface_oracle.hpp"
 
 using namespace clinch;
+using test::found;
 
 namespace {
 
@@ -25,14 +26,6 @@ NarrowPhaseOptions wanting(std::uint32_t points, double precision) {
     options.contacts_per_pair = points;
     options.precision = precision;
     return options;
-}
-
-std::vector<Contact> found(Context& context, const NarrowPhaseOptions& options, const Scene& scene,
-                           const std::vector<Pair>& pairs) {
-    NarrowPhase narrow(context, options);
-    const View<const Contact> contacts = narrow.find(scene, pairs);
-    CHECK(narrow.report().contacts == contacts.size());
-    return {contacts.begin(), contacts.end()};
 }
 
 std::map<Group, std::vector<Contact>> grouped(const std::vector<Contact>& contacts) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <set>
 #include <string>
 #include <tuple>
@@ -14,27 +13,11 @@
 #include "tests/narrow_phase/narrow_scenes.hpp"
 
 using namespace clinch;
+using test::found;
+using test::same_bytes;
+using test::with_precision;
 
 namespace {
-
-NarrowPhaseOptions with_precision(double precision) {
-    NarrowPhaseOptions options;
-    options.precision = precision;
-    return options;
-}
-
-std::vector<Contact> found(Context& context, const NarrowPhaseOptions& options, const Scene& scene,
-                           const std::vector<Pair>& pairs) {
-    NarrowPhase narrow(context, options);
-    const View<const Contact> contacts = narrow.find(scene, pairs);
-    CHECK(narrow.report().pairs == pairs.size());
-    CHECK(narrow.report().contacts == contacts.size());
-    return {contacts.begin(), contacts.end()};
-}
-
-bool same_bytes(const std::vector<Contact>& p, const std::vector<Contact>& q) {
-    return p.size() == q.size() && (p.empty() || std::memcmp(p.data(), q.data(), p.size() * sizeof p[0]) == 0);
-}
 
 double length(const Vec3& v) {
     return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);

@@ -1,14 +1,15 @@
 // Scenes for tests of the narrow phase, and what answers must satisfy.
 #pragma once
 
+#include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <utility>
 #include <vector>
 
-#include "clinch/contact.hpp"
-#include "clinch/scene.hpp"
+#include "clinch/narrow_phase.hpp"
 #include "tests/random.hpp"
 
 namespace clinch::test {
@@ -84,6 +85,31 @@ inline std::vector<Pair> all_pairs(const Scene& scene) {
         for (std::uint32_t b = a + 1; b < n; ++b)
             if (!is_plane(a) || !is_plane(b)) pairs.push_back({a, b});
     return pairs;
+}
+
+inline NarrowPhaseOptions with_precision(double precision) {
+    NarrowPhaseOptions options;
+    options.precision = precision;
+    return options;
+}
+
+/// The contacts of a call, the report's counts checked.
+inline std::vector<Contact> found(NarrowPhase& narrow, const Scene& scene, const std::vector<Pair>& pairs,
+                                  WarmStart* warm = nullptr) {
+    const View<const Contact> contacts = narrow.find(scene, pairs, warm);
+    CHECK(narrow.report().pairs == pairs.size());
+    CHECK(narrow.report().contacts == contacts.size());
+    return {contacts.begin(), contacts.end()};
+}
+/// Those of a narrow phase of its own.
+inline std::vector<Contact> found(Context& context, const NarrowPhaseOptions& options, const Scene& scene,
+                                  const std::vector<Pair>& pairs) {
+    NarrowPhase narrow(context, options);
+    return found(narrow, scene, pairs);
+}
+
+inline bool same_bytes(const std::vector<Contact>& p, const std::vector<Contact>& q) {
+    return p.size() == q.size() && (p.empty() || std::memcmp(p.data(), q.data(), p.size() * sizeof p[0]) == 0);
 }
 
 inline std::map<std::pair<std::uint32_t, std::uint32_t>, Contact> by_pair(View<const Contact> contacts) {

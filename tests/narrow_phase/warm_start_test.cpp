@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstring>
 #include <map>
 #include <utility>
 
@@ -16,16 +15,13 @@
 #include "tests/narrow_phase/narrow_scenes.hpp"
 
 using namespace clinch;
+using test::found;
+using test::same_bytes;
+using test::with_precision;
 
 namespace {
 
 constexpr std::uint64_t seed = 91;
-
-NarrowPhaseOptions with_precision(double precision) {
-    NarrowPhaseOptions options;
-    options.precision = precision;
-    return options;
-}
 
 constexpr std::size_t capsule = 2, cylinder = 3;
 
@@ -49,15 +45,6 @@ void move_all(Scene& scene, double step, test::Random& random) {
                          pose.position.z + random.between(-step, step)};
         scene.set_pose({i}, pose);
     }
-}
-
-std::vector<Contact> found(NarrowPhase& narrow, const Scene& scene, const std::vector<Pair>& pairs, WarmStart* warm) {
-    const View<const Contact> contacts = narrow.find(scene, pairs, warm);
-    return {contacts.begin(), contacts.end()};
-}
-
-bool same_bytes(const std::vector<Contact>& p, const std::vector<Contact>& q) {
-    return p.size() == q.size() && (p.empty() || std::memcmp(p.data(), q.data(), p.size() * sizeof p[0]) == 0);
 }
 
 // Whether the device does these itself.
