@@ -440,6 +440,17 @@ TEST_CASE("known failures: what rounding bends out of shape", "[device][builds]"
                      -0.0088032862417779089,
                      {},
                      1e-9});
+    // So little apart that the square of the way between them is next to no number.
+    cases.push_back({"a speck in the middle of a cylinder",
+                     Cylinder{0.068752784637705441, 1},
+                     {},
+                     Capsule{5.6354771177571296e-09, 0},
+                     {{7.479093777160556e-21, -9.7513815415703476e-29, -1.4676408912288237e-28},
+                      {1, 3.6105684328084202e-09, 9.8116224467585935e-09, -6.5190930112007809e-09}},
+                     -0.0687527902731825581,
+                     {},
+                     4e-3,
+                     4e-3});
     // A simplex that claims to enclose the origin is a sliver, and the point its parts make is far from it.
     cases.push_back({"capsule on a thin box",
                      Box{{3, 0.010357611921627829, 1.1824211487948961}},
