@@ -122,7 +122,7 @@ TEST_CASE("what is kept of other bodies does no harm", "[device][builds]") {
     }
 }
 
-TEST_CASE("an error of the narrow phase leaves nothing to start from", "[device]") {
+TEST_CASE("an error of the narrow phase leaves nothing to start from", "[device][builds]") {
     Context context = test::with_lanes(0, list_devices()[0].lanes);
     test::Random random(seed);
     const Scene scene = bodies(30, capsule, 2.0, random);
@@ -136,7 +136,7 @@ TEST_CASE("an error of the narrow phase leaves nothing to start from", "[device]
     CHECK(warm.size() == 0);
 }
 
-TEST_CASE("a pipeline keeps what pairs start from, and drops it when told", "[device]") {
+TEST_CASE("a pipeline keeps what pairs start from, and drops it when told", "[device][builds]") {
     Context context = test::with_lanes(0, list_devices()[0].lanes);
     test::Random random(seed);
     Scene scene = bodies(60, capsule, 2.0, random);
