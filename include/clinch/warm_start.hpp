@@ -8,10 +8,11 @@ namespace clinch {
 
 /// Owned by the caller, filled by NarrowPhase. Bodies that have moved little since are then decided by the same corners
 /// of boxes, capsules and hulls, and a look or two confirms it; without, each pair is searched from nothing. It is
-/// never trusted: what no longer fits, other shapes or poses, costs time, not truth. 24 bytes a pair, on the host.
+/// never trusted: what no longer fits, other shapes or poses, costs time, not truth. 48 bytes a pair, on the host.
 ///
 /// Answers are within their errors as ever, but their last digits, and those of pairs that lie within their error of
-/// the margins, may depend on what is kept: the same calls with the same pairs, in the same order, give the same bytes.
+/// the margins, may depend on what is kept: the same calls in the same order give the same bytes on
+/// the same device.
 class WarmStart {
 public:
     /// Nothing is kept.
