@@ -1,5 +1,6 @@
 #include "clinch/context.hpp"
 
+#include <tuple>
 #include <utility>
 
 #include "clinch/interop/opencl.hpp"
@@ -19,13 +20,32 @@ std::size_t Context::Impl::primary() const {
     if (infos.empty())
         throw Error(ErrorCode::InvalidArgument,
                     "this needs an OpenCL device, but the context was made for the host alone");
-    std::size_t best = 0;
     const auto rank = [&](std::size_t i) {
-        return std::make_pair(infos[i].type == DeviceType::Gpu, infos[i].compute_units * infos[i].lanes);
+        return std::make_tuple(in_use(i), infos[i].type == DeviceType::Gpu, infos[i].compute_units * infos[i].lanes);
     };
+    std::size_t best = 0;
     for (std::size_t i = 1; i < infos.size(); ++i)
         if (rank(i) > rank(best)) best = i;
     return best;
+}
+
+bool Context::Impl::retire(std::size_t i, const std::string& why) {
+    if (!in_use(i)) return true;
+    if (crew().size() < 2) return false;
+    retired.resize(infos.size());
+    retired[i] = why.empty() ? "it failed" : why;
+    if (options.log) options.log("device '" + infos[i].name + "' is not used any more: " + retired[i]);
+    return true;
+}
+
+std::vector<std::size_t> Context::Impl::crew() const {
+    std::vector<std::size_t> crew;
+    if (infos.empty()) return crew;
+    const std::size_t first = primary();
+    crew.push_back(first);
+    for (std::size_t i = 0; i < infos.size(); ++i)
+        if (i != first && in_use(i)) crew.push_back(i);
+    return crew;
 }
 
 Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()) {

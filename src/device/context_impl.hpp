@@ -16,11 +16,18 @@ struct Context::Impl {
     std::vector<std::shared_ptr<const void>> id_owners;    // keeps sub-devices alive
     std::vector<std::unique_ptr<detail::Device>> devices;  // null until opened
 
+    std::vector<std::string> retired;  // why device i is not used any more; empty: it is
+
     /// Opens device i if it is not open yet.
     detail::Device& open(std::size_t i);
     /// The device that one-device work goes to: the first GPU, else the device with most compute
-    /// units. Opens nothing. InvalidArgument on a Context without devices.
+    /// units, of those not retired. Opens nothing. InvalidArgument on a Context without devices.
     std::size_t primary() const;
+    /// Takes device i out of use, for good, and logs why. False if it is the last: then it stays.
+    bool retire(std::size_t i, const std::string& why);
+    bool in_use(std::size_t i) const noexcept { return i >= retired.size() || retired[i].empty(); }
+    /// Those not retired, the primary first, then as in infos.
+    std::vector<std::size_t> crew() const;
 };
 
 }  // namespace clinch

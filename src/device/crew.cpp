@@ -1,0 +1,92 @@
+#include "src/device/crew.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "clinch/error.hpp"
+
+namespace clinch::detail {
+namespace {
+
+// Joins what was started, also when a thread cannot be.
+class Threads {
+public:
+    ~Threads() {
+        for (std::thread& thread : threads_) thread.join();
+    }
+    template <class Work>
+    void start(Work&& work) {
+        threads_.emplace_back(std::forward<Work>(work));
+    }
+
+private:
+    std::vector<std::thread> threads_;
+};
+
+// The number of OpenMP threads of the calling thread, for as long as it lives.
+class HostThreads {
+public:
+    explicit HostThreads(int count) : before_(omp_get_max_threads()) { omp_set_num_threads(count); }
+    ~HostThreads() { omp_set_num_threads(before_); }
+    HostThreads(const HostThreads&) = delete;
+    HostThreads& operator=(const HostThreads&) = delete;
+
+private:
+    int before_;
+};
+
+}  // namespace
+
+std::vector<std::exception_ptr> run_crew(std::size_t count, const std::function<void(std::size_t)>& work) {
+    std::vector<std::exception_ptr> thrown(count);
+    if (count == 0) return thrown;
+    const int host_threads = std::max(1, omp_get_max_threads() / static_cast<int>(count));
+    const auto run = [&](std::size_t k) {
+        const HostThreads share(host_threads);
+        try {
+            work(k);
+        } catch (...) {
+            thrown[k] = std::current_exception();
+        }
+    };
+    {
+        Threads others;
+        for (std::size_t k = 1; k < count; ++k) {
+            try {
+                others.start([&run, k] { run(k); });
+            } catch (const std::system_error& error) {
+                thrown[k] = std::make_exception_ptr(
+                    Error(ErrorCode::DeviceFailed, std::string("a host thread could not be started: ") + error.what()));
+            }
+        }
+        run(0);
+    }
+    return thrown;
+}
+
+bool is_device_fault(const std::exception_ptr& thrown) {
+    try {
+        std::rethrow_exception(thrown);
+    } catch (const Error& error) {
+        return error.code() == ErrorCode::DeviceFailed || error.code() == ErrorCode::OutOfMemory ||
+               error.code() == ErrorCode::BuildFailed;
+    } catch (...) {
+        return false;
+    }
+}
+
+std::string message_of(const std::exception_ptr& thrown) {
+    try {
+        std::rethrow_exception(thrown);
+    } catch (const std::exception& error) {
+        return error.what();
+    } catch (...) {
+        return "an unknown exception";
+    }
+}
+
+}  // namespace clinch::detail
