@@ -33,6 +33,14 @@ struct Skipped {
     std::uint64_t static_pairs = 0;    ///< overlapping pairs dropped since neither body can move
 };
 
+/// What one device did in a step that was split over several.
+struct DeviceWork {
+    std::uint32_t device = 0;  ///< its place in Context::devices()
+    std::uint64_t boxes = 0;   ///< given to it; those at a border are given to the devices of both sides
+    std::uint64_t pairs = 0;   ///< found by it; those at a border may be found on both sides
+    double ms = 0.0;           ///< wall time of its part, kernels built in it not counted
+};
+
 /// Counts and times of the last step (or find).
 struct Report {
     std::uint64_t bodies = 0;  ///< rejected ones included
@@ -44,6 +52,9 @@ struct Report {
     StageTimes ms;
     Skipped skipped;
     std::vector<Rejection> rejected;      ///< ascending by body
+    std::vector<DeviceWork> broad_split;  ///< of each device that had a part of the broad phase; empty: one had it all
+    /// What went wrong and was made good: devices that failed, of which others then did the work. One line each.
+    std::vector<std::string> warnings;
     std::uint64_t peak_device_bytes = 0;  ///< most memory held on devices so far, summed over them
     /// Most host memory so far of what grows with boxes and pairs and is no device's memory: lists of pairs, what is
     /// kept of them from call to call, and contacts.

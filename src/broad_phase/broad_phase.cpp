@@ -7,6 +7,7 @@
 
 #include "clinch/interop/opencl.hpp"
 #include "src/broad_phase/broad_phase_impl.hpp"
+#include "src/device/crew.hpp"
 #include "src/device/opencl_error.hpp"
 #include "src/device/stopwatch.hpp"
 
@@ -88,7 +89,8 @@ bool BroadPhase::Impl::measured(const char* algorithm, detail::BoxInput& boxes, 
     try {
         if (!search(counts)) return false;
     } catch (...) {
-        pairs.clear();
+        told_before_failure = pairs.streams() ? pairs.size() : 0;
+        pairs.restart();
         throw;
     }
     report.ms.download = counts.download_ms;
@@ -111,8 +113,9 @@ void BroadPhase::Impl::note_memory() {
     report.peak_device_bytes = 0;
     for (const auto& opened : context.devices)
         if (opened != nullptr) report.peak_device_bytes += opened->report().peak_bytes;
-    most_host_bytes = std::max<std::uint64_t>(
-        most_host_bytes, pairs.host_bytes() + events.host_bytes() + (incremental ? incremental->host_bytes() : 0));
+    most_host_bytes = std::max<std::uint64_t>(most_host_bytes, pairs.host_bytes() + events.host_bytes() +
+                                                                   (incremental ? incremental->host_bytes() : 0) +
+                                                                   (split ? split->host_bytes() : 0));
     report.peak_host_bytes = most_host_bytes;
 }
 
@@ -130,24 +133,67 @@ void BroadPhase::Impl::listed(std::uint64_t count) {
     if (options.events) events.update(pairs.view());
 }
 
+// The pairs from all devices that they are worth; false if one device is to find them.
+bool BroadPhase::Impl::find_split(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
+                                  const detail::FilterInput& filters, detail::FindCounts& counts) {
+    if (context.infos.size() < 2 || pairs.streams()) return false;
+    if (!split) split = std::make_unique<detail::BroadSplit>(context, options);
+    if (!split->pays(row, boxes.count()) || !split->find(row, boxes, filters, pairs, counts)) return false;
+    report.broad_split = split->work();
+    split->forget_pairs();
+    report.warnings.insert(report.warnings.end(), split->warnings().begin(), split->warnings().end());
+    return true;
+}
+
+void BroadPhase::Impl::find_on_one(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
+                                   const detail::FilterInput& filters, detail::FindCounts& counts) {
+    if (row.needs_device && !detail::runs_on(row, context.infos[context.primary()]))
+        throw Error(ErrorCode::DeviceFailed, std::string("the algorithm '") + row.name + "' cannot run on '" +
+                                                 context.infos[context.primary()].name +
+                                                 "', whose driver has the quirk loops-end-early; brute can");
+    const detail::Stopwatch upload;
+    auto& algorithm = made[&row];
+    if (!algorithm) algorithm = row.make(row.needs_device ? &device() : nullptr, options);
+    if (row.needs_device) boxes.on(device());
+    report.ms.upload = upload.ms();
+    algorithm->find(boxes, filters, pairs, counts);
+}
+
+void BroadPhase::Impl::run_once(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
+                                const detail::FilterInput& filters) {
+    measured(row.name, boxes, [&](detail::FindCounts& counts) {
+        if (!find_split(row, boxes, filters, counts)) find_on_one(row, boxes, filters, counts);
+        return true;
+    });
+}
+
+// After the failure that is being handled: whether another device can do it all. Then the one that failed is retired.
+bool BroadPhase::Impl::failed_over(const detail::BoxInput& boxes) {
+    const std::exception_ptr thrown = std::current_exception();
+    if (context.infos.size() < 2 || !boxes.is_on_host() || !detail::is_device_fault(thrown)) return false;
+    const std::size_t device = context.primary();
+    if (!context.retire(device, detail::message_of(thrown))) return false;
+    made.clear();
+    staging = detail::Buffer();
+    report.warnings.push_back("device " + std::to_string(device) + " ('" + context.infos[device].name +
+                              "') failed and is not used any more: " + detail::message_of(thrown));
+    return true;
+}
+
 void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
                            bool list_rejected) {
     listed_boxes = 0;
     leave_steps();
     report = Report{};
-    if (row.needs_device && !detail::runs_on(row, context.infos[context.primary()]))
-        throw Error(ErrorCode::DeviceFailed, std::string("the algorithm '") + row.name + "' cannot run on '" +
-                                                 context.infos[context.primary()].name +
-                                                 "', whose driver has the quirk loops-end-early; brute can");
-    measured(row.name, boxes, [&](detail::FindCounts& counts) {
-        const detail::Stopwatch upload;
-        auto& algorithm = made[&row];
-        if (!algorithm) algorithm = row.make(row.needs_device ? &device() : nullptr, options);
-        if (row.needs_device) boxes.on(device());
-        report.ms.upload = upload.ms();
-        algorithm->find(boxes, filters, pairs, counts);
-        return true;
-    });
+    for (bool done = false; !done;) {
+        try {
+            run_once(row, boxes, filters);
+            done = true;
+        } catch (...) {
+            // Pairs that were handed over cannot be taken back.
+            if (told_before_failure > 0 || !row.needs_device || !failed_over(boxes)) throw;
+        }
+    }
     if (any_invalid && list_rejected) report.rejected = rejected_boxes(boxes.on_host());
 }
 
@@ -201,6 +247,7 @@ void BroadPhase::Impl::begin_steps(detail::BoxInput& boxes, const detail::Filter
     const std::vector<Pair> list(pairs.view().begin(), pairs.view().end());
     pairs.clear();
     made.clear();  // their memory is needed now
+    split.reset();
     incremental = std::make_unique<detail::Incremental>(device(), options);
     bool begun = false;
     try {

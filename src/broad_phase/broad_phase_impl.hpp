@@ -8,6 +8,7 @@
 #include "src/broad_phase/algorithm.hpp"
 #include "src/broad_phase/incremental.hpp"
 #include "src/broad_phase/pair_events.hpp"
+#include "src/broad_phase/split.hpp"
 #include "src/device/context_impl.hpp"
 
 namespace clinch {
@@ -23,14 +24,16 @@ struct BroadPhase::Impl {
     BroadPhaseOptions options;
     detail::Buffer staging;  // boxes of the host on the device
     std::map<const detail::AlgorithmRow*, std::unique_ptr<detail::BroadPhaseAlgorithm>> made;
+    std::unique_ptr<detail::BroadSplit> split;         // where there are several devices
     std::unique_ptr<detail::Incremental> incremental;  // only while little changes from call to call
     detail::PairList pairs;                            // after `made`, whose buffers it may map: it ends first
     detail::PairEvents events;                         // kept up to date if the options ask for it
     Report report;
     std::uint64_t most_host_bytes = 0;
-    std::uint64_t steps_refused = 0;  // number of boxes for which keeping pairs did not pay
-    bool any_invalid = false;         // among the boxes of the last call
-    std::uint64_t listed_boxes = 0;   // boxes of the last call, if `pairs` is its list; else 0
+    std::uint64_t steps_refused = 0;        // number of boxes for which keeping pairs did not pay
+    std::uint64_t told_before_failure = 0;  // pairs that a stream had handed over when it failed
+    bool any_invalid = false;               // among the boxes of the last call
+    std::uint64_t listed_boxes = 0;         // boxes of the last call, if `pairs` is its list; else 0
 
     Impl(Context& c, BroadPhaseOptions o);
     /// The algorithm for `count` boxes, given what the last report says and, if they are in host memory, `boxes`.
@@ -54,6 +57,12 @@ struct BroadPhase::Impl {
              bool list_rejected);
 
 private:
+    bool find_split(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
+                    detail::FindCounts& counts);
+    void find_on_one(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
+                     detail::FindCounts& counts);
+    void run_once(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters);
+    bool failed_over(const detail::BoxInput& boxes);
     void listed(std::uint64_t count);
     void leave_steps();
     void note_memory();

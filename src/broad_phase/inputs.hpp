@@ -20,6 +20,8 @@ public:
     BoxInput(Device& device, cl_mem boxes, std::uint64_t first, std::uint32_t count);
 
     std::uint32_t count() const noexcept { return count_; }
+    /// Whether they are in host memory, without asking a device.
+    bool is_on_host() const noexcept { return host_.data() != nullptr; }
     /// On the host; waits for a device that has them.
     View<const Aabb> on_host();
     /// On `device`; box number 0 is at first().

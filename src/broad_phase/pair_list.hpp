@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <boost/container/vector.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,16 +23,21 @@ public:
     using Taker = std::function<void(View<const Pair>)>;
 
     void clear() {
-        mapping_.release();
-        host_.clear();
-        size_ = 0;
+        restart();
         counts_only_ = false;
         take_ = nullptr;
         piece_ = unlimited;
     }
+    /// Forgets the pairs; where they go stays as it is.
+    void restart() {
+        mapping_.release();
+        host_.clear();
+        size_ = 0;
+    }
     /// From here to the next clear(): pairs are counted, not kept.
     void count_only() { counts_only_ = true; }
     bool counts_only() const noexcept { return counts_only_; }
+    bool streams() const noexcept { return take_ != nullptr; }
     /// From here to the next clear(): pairs go to `take`, which may throw, at most `piece` at a time.
     void stream_to(const Taker& take, std::size_t piece) {
         take_ = &take;
@@ -54,6 +60,12 @@ public:
             (*take_)({pairs + first, std::min(piece_, count - first)});
     }
     void append(const std::vector<Pair>& pairs) { append(pairs.data(), pairs.size()); }
+    /// Makes room for `count` pairs behind those there are, for the caller to write; of a list that keeps its pairs.
+    Pair* extend(std::size_t count) {
+        size_ += count;
+        host_.resize(host_.size() + count, boost::container::default_init);
+        return host_.data() + (host_.size() - count);
+    }
     /// Adds to the count of a list that only counts.
     void add_count(std::uint64_t pairs) { size_ += pairs; }
     /// The whole list is `count` pairs in a mapped buffer that outlives this list's next clear().
@@ -92,7 +104,7 @@ public:
 
 private:
     static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
-    std::vector<Pair> host_;
+    boost::container::vector<Pair> host_;  // grows without being filled first
     Mapping mapping_;
     std::uint64_t size_ = 0;
     bool counts_only_ = false;

@@ -16,6 +16,8 @@ struct Context::Impl {
     std::vector<std::shared_ptr<const void>> id_owners;    // keeps sub-devices alive
     std::vector<std::unique_ptr<detail::Device>> devices;  // null until opened
 
+    /// A broad phase of fewer boxes than this for each device goes to fewer devices.
+    std::uint64_t least_boxes_a_device = 50000;
     std::vector<std::string> retired;  // why device i is not used any more; empty: it is
 
     /// Opens device i if it is not open yet.

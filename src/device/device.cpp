@@ -256,18 +256,26 @@ void Device::clear(const Buffer& buffer, std::size_t bytes) {
           "clEnqueueFillBuffer");
 }
 
-Mapping Device::map(const Buffer& buffer, std::size_t bytes) {
+Mapping Device::map_for(cl_map_flags flags, const Buffer& buffer, std::size_t bytes) {
     Mapping mapping;
     if (bytes == 0) return mapping;
     cl_int status = CL_SUCCESS;
     void* pointer =
-        clEnqueueMapBuffer(queue(), buffer.handle(), CL_TRUE, CL_MAP_READ, 0, bytes, 0, nullptr, nullptr, &status);
+        clEnqueueMapBuffer(queue(), buffer.handle(), CL_TRUE, flags, 0, bytes, 0, nullptr, nullptr, &status);
     check(status, "clEnqueueMapBuffer");
     impl_->in_flight.clear();
     mapping.device_ = this;
     mapping.memory_ = buffer.handle();
     mapping.pointer_ = pointer;
     return mapping;
+}
+
+Mapping Device::map(const Buffer& buffer, std::size_t bytes) {
+    return map_for(CL_MAP_READ, buffer, bytes);
+}
+
+Mapping Device::map_to_write(const Buffer& buffer, std::size_t bytes) {
+    return map_for(CL_MAP_WRITE_INVALIDATE_REGION, buffer, bytes);
 }
 
 Kernel Device::kernel(const std::string& module, const std::string& name, const std::string& defines) {

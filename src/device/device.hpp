@@ -108,7 +108,7 @@ private:
     std::string name_;
 };
 
-/// Device memory made readable on the host: mapped where they share memory, else copied by the
+/// Device memory made readable, or writable, on the host: mapped where they share memory, else copied by the
 /// driver. Unmapped at its end.
 class Mapping {
 public:
@@ -122,6 +122,11 @@ public:
     template <class T>
     const T* as() const noexcept {
         return static_cast<const T*>(pointer_);
+    }
+    /// Of a mapping to write.
+    template <class T>
+    T* to() const noexcept {
+        return static_cast<T*>(pointer_);
     }
     void release() noexcept;
 
@@ -168,6 +173,8 @@ public:
     void clear(const Buffer& buffer, std::size_t bytes);
     /// Readable host memory of the first `bytes`; waits for it. `buffer` must outlive the mapping.
     Mapping map(const Buffer& buffer, std::size_t bytes);
+    /// Host memory for the first `bytes`, of which all must be written before the mapping ends.
+    Mapping map_to_write(const Buffer& buffer, std::size_t bytes);
 
     /// The kernel `name` of the module `module` ("broad_phase/brute" is cl/broad_phase/brute.cl),
     /// built for this device on first use with `defines` ("-DNAME=1 ...") on top of LANES.
@@ -186,6 +193,7 @@ public:
 
 private:
     friend class Mapping;
+    Mapping map_for(cl_map_flags flags, const Buffer& buffer, std::size_t bytes);
     void write_later(const Buffer& buffer, std::vector<std::byte> data, std::size_t offset);
     struct Impl;
     std::unique_ptr<Impl> impl_;

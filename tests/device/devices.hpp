@@ -30,6 +30,24 @@ inline Context with_lanes(std::uint32_t i, std::uint32_t lanes) {
     return context;
 }
 
+/// A context of `count` devices: those that the environment offers, over and over, each opened as one of its own.
+inline Context several(std::uint32_t count) {
+    Context context;
+    Context::Impl& impl = context.impl();
+    const std::size_t there = impl.infos.size();
+    for (std::size_t i = there; i < count; ++i) {
+        const std::size_t as = i % there;
+        impl.infos.push_back(impl.infos[as]);
+        impl.ids.push_back(impl.ids[as]);
+        impl.id_owners.push_back(impl.id_owners[as]);
+    }
+    impl.infos.resize(count);
+    impl.ids.resize(count);
+    impl.id_owners.resize(count);
+    impl.devices.resize(count);
+    return context;
+}
+
 /// Names of the broad-phase algorithms that run on a device: all but those that a quirk of it rules out.
 inline std::vector<std::string> names_for(const DeviceInfo& device) {
     std::vector<std::string> names;

@@ -1,0 +1,185 @@
+#include "src/broad_phase/slab_merge.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <cstddef>
+
+#include "src/primitives/host_parallel.hpp"
+
+namespace clinch::detail {
+namespace {
+
+constexpr std::size_t least_pairs_a_part = std::size_t{1} << 14;
+
+// A run of one slab's list: pairs [at, end), the places of boxes from `member` on.
+struct Run {
+    const Pair* at;
+    const Pair* end;
+    std::uint32_t member;
+};
+
+// Boxes [first, end) as the a of pairs, and where their pairs begin in the result.
+struct Part {
+    std::uint32_t first, end;
+    std::vector<Run> runs;                // of each slab
+    std::vector<std::uint32_t> runs_end;  // the places that boxes from `end` on have in it
+    std::size_t pairs = 0, place = 0;
+};
+
+bool reaches_over(SlabSpan span) {
+    return span.first != span.last;
+}
+
+class SortedMerge {
+public:
+    SortedMerge(const SlabDeal& deal, const SlabLists& lists) : deal_(deal), lists_(lists) {}
+
+    Part part(std::uint32_t first, std::uint32_t end) const {
+        Part part{first, end, {}, {}, 0, 0};
+        for (std::size_t s = 0; s < lists_.size(); ++s) {
+            const std::uint32_t low = place_of(s, first), high = place_of(s, end);
+            part.runs.push_back({row_of(s, low), row_of(s, high), low});
+            part.runs_end.push_back(high);
+        }
+        return part;
+    }
+    // How many pairs a part has.
+    std::size_t count(const Part& part) const {
+        std::size_t pairs = 0;
+        for (std::size_t s = 0; s < part.runs.size(); ++s) {
+            const Run& run = part.runs[s];
+            pairs += static_cast<std::size_t>(run.end - run.at);
+            if (s > 0) pairs -= count_before(s, run, part.runs_end[s]);
+        }
+        return pairs;
+    }
+    // Writes the pairs of a part.
+    void write(const Part& part, Pair* out) const {
+        std::vector<Run> runs = part.runs;
+        for (std::uint32_t a = part.first; a < part.end; ++a) {
+            const SlabSpan span = deal_.span(a);
+            out = reaches_over(span) ? write_common_row(a, span, runs, out) : write_row(a, span.first, runs, out);
+        }
+    }
+
+private:
+    // Pairs of a run that belong to slabs before: both boxes begin there.
+    std::size_t count_before(std::size_t s, const Run& run, std::uint32_t members_end) const {
+        std::size_t pairs = 0;
+        const Pair* row = run.at;
+        for (std::uint32_t m = run.member; m < members_end; ++m) {
+            if (deal_.span(box(s, m)).first == s) continue;
+            row = std::lower_bound(row, run.end, m, [](const Pair& pair, std::uint32_t a) { return pair.a < a; });
+            for (; row < run.end && row->a == m; ++row) pairs += deal_.span(box(s, row->b)).first < s ? 1U : 0U;
+        }
+        return pairs;
+    }
+    std::uint32_t box(std::size_t s, std::uint32_t member) const { return deal_.members(s)[member]; }
+    std::uint32_t place_of(std::size_t s, std::uint32_t box) const {
+        const std::vector<std::uint32_t>& members = deal_.members(s);
+        return static_cast<std::uint32_t>(std::lower_bound(members.begin(), members.end(), box) - members.begin());
+    }
+    const Pair* row_of(std::size_t s, std::uint32_t member) const {
+        return std::lower_bound(lists_[s].begin(), lists_[s].end(), member,
+                                [](const Pair& pair, std::uint32_t m) { return pair.a < m; });
+    }
+    // The pairs of box a, which one slab alone has.
+    Pair* write_row(std::uint32_t a, std::size_t s, std::vector<Run>& runs, Pair* out) const {
+        const std::uint32_t* const members = deal_.members(s).data();
+        Run& run = runs[s];
+        const std::uint32_t member = run.member++;
+        for (; run.at < run.end && run.at->a == member; ++run.at) *out++ = {a, members[run.at->b]};
+        return out;
+    }
+    // Those of a box that several slabs have.
+    Pair* write_common_row(std::uint32_t a, SlabSpan span, std::vector<Run>& runs, Pair* out) const {
+        Pair* const row = out;
+        for (std::size_t s = span.first; s <= span.last; ++s) {
+            Run& run = runs[s];
+            const std::uint32_t member = run.member++;
+            for (; run.at < run.end && run.at->a == member; ++run.at) {
+                const std::uint32_t b = box(s, run.at->b);
+                if (!belongs_before(deal_, s, a, b)) *out++ = {a, b};
+            }
+        }
+        std::sort(row, out, [](const Pair& p, const Pair& q) { return p.b < q.b; });
+        return out;
+    }
+
+    const SlabDeal& deal_;
+    const SlabLists& lists_;
+};
+
+std::size_t parts_for(std::uint64_t pairs, std::size_t boxes) {
+    const auto threads = static_cast<std::size_t>(std::max(1, omp_get_max_threads()));
+    const std::size_t most = static_cast<std::size_t>(pairs) / least_pairs_a_part + 1;
+    return std::max<std::size_t>(1, std::min({most, 16 * threads, boxes}));
+}
+
+void merge_sorted(const SlabDeal& deal, const SlabLists& lists, std::uint64_t pairs, PairList& out) {
+    const SortedMerge merge(deal, lists);
+    std::vector<Part> parts(parts_for(pairs, deal.boxes()));
+    parallel_for(parts.size(), parts.size() > 1, [&](std::size_t p) {
+        const auto cut = [&](std::size_t i) { return static_cast<std::uint32_t>(deal.boxes() * i / parts.size()); };
+        parts[p] = merge.part(cut(p), cut(p + 1));
+        parts[p].pairs = merge.count(parts[p]);
+    });
+    std::size_t total = 0;
+    for (Part& part : parts) {
+        part.place = total;
+        total += part.pairs;
+    }
+    Pair* const first = out.extend(total);
+    parallel_for(parts.size(), parts.size() > 1, [&](std::size_t p) { merge.write(parts[p], first + parts[p].place); });
+}
+
+// A stretch of one slab's list, and where its pairs go.
+struct Stretch {
+    std::size_t slab, first, end, place = 0;
+};
+
+template <class Take>
+void each_pair(const SlabDeal& deal, const SlabLists& lists, const Stretch& stretch, const Take& take) {
+    const std::uint32_t* const members = deal.members(stretch.slab).data();
+    for (std::size_t i = stretch.first; i < stretch.end; ++i) {
+        const std::uint32_t a = members[lists[stretch.slab][i].a], b = members[lists[stretch.slab][i].b];
+        if (stretch.slab == 0 || !belongs_before(deal, stretch.slab, a, b)) take(Pair{a, b});
+    }
+}
+
+void join_unsorted(const SlabDeal& deal, const SlabLists& lists, PairList& out) {
+    std::vector<Stretch> stretches;
+    for (std::size_t s = 0; s < lists.size(); ++s)
+        for (std::size_t i = 0; i < lists[s].size(); i += least_pairs_a_part)
+            stretches.push_back({s, i, std::min(lists[s].size(), i + least_pairs_a_part)});
+    std::vector<std::size_t> counts(stretches.size(), 0);
+    parallel_for(stretches.size(), stretches.size() > 1, [&](std::size_t k) {
+        std::size_t count = 0;
+        each_pair(deal, lists, stretches[k], [&](Pair) { ++count; });
+        counts[k] = count;
+    });
+    std::size_t total = 0;
+    for (std::size_t k = 0; k < stretches.size(); ++k) {
+        stretches[k].place = total;
+        total += counts[k];
+    }
+    Pair* const first = out.extend(total);
+    parallel_for(stretches.size(), stretches.size() > 1, [&](std::size_t k) {
+        Pair* at = first + stretches[k].place;
+        each_pair(deal, lists, stretches[k], [&](Pair pair) { *at++ = pair; });
+    });
+}
+
+}  // namespace
+
+void merge_slabs(const SlabDeal& deal, const SlabLists& lists, bool sorted, PairList& out) {
+    std::uint64_t pairs = 0;
+    for (const View<const Pair>& list : lists) pairs += list.size();
+    if (sorted)
+        merge_sorted(deal, lists, pairs, out);
+    else
+        join_unsorted(deal, lists, out);
+}
+
+}  // namespace clinch::detail

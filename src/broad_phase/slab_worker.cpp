@@ -1,0 +1,82 @@
+#include "src/broad_phase/slab_worker.hpp"
+
+#include "src/device/stopwatch.hpp"
+
+namespace clinch::detail {
+namespace {
+
+// Those of the column that belong to members; null where there is no column.
+template <class T>
+const T* column_of(const T* column, const std::vector<std::uint32_t>& members, std::vector<T>& to) {
+    if (column == nullptr) return nullptr;
+    to.resize(members.size());
+    for (std::size_t i = 0; i < members.size(); ++i) to[i] = column[members[i]];
+    return to.data();
+}
+
+// Members of slab s that reach into one before, too: pairs of two of them belong there.
+std::vector<std::uint32_t> begun_before(const SlabDeal& deal, std::size_t s) {
+    std::vector<std::uint32_t> members;
+    for (const std::uint32_t box : deal.members(s))
+        if (deal.span(box).first < s) members.push_back(box);
+    return members;
+}
+
+}  // namespace
+
+void SlabWorker::assign(std::size_t device) {
+    if (device == device_) return;
+    pairs_.clear();
+    made_.clear();
+    staging_ = Buffer();
+    device_ = device;
+}
+
+// Boxes of members on the device, in their order.
+const Buffer& SlabWorker::send(Device& device, View<const Aabb> boxes, const std::vector<std::uint32_t>& members) {
+    const std::size_t bytes = members.size() * sizeof(Aabb);
+    device.reserve(staging_, bytes, "boxes");
+    const Mapping mapping = device.map_to_write(staging_, bytes);
+    Aabb* const rows = mapping.to<Aabb>();
+    for (std::size_t i = 0; i < members.size(); ++i) rows[i] = boxes[members[i]];
+    return staging_;
+}
+
+FilterInput SlabWorker::filters_of(const FilterInput& filters, const std::vector<std::uint32_t>& members) {
+    return {{column_of(filters.columns.group, members, group_), column_of(filters.columns.mask, members, mask_),
+             column_of(filters.columns.motion, members, motion_)},
+            0};
+}
+
+// The pairs of the members into `pairs_`.
+void SlabWorker::search(const SlabTask& task, const std::vector<std::uint32_t>& members) {
+    if (members.empty()) return;
+    Device& device = context_.open(device_);
+    std::unique_ptr<BroadPhaseAlgorithm>& algorithm = made_[&task.row];
+    if (!algorithm) algorithm = task.row.make(&device, options_);
+    BoxInput input(device, send(device, task.boxes, members).handle(), 0, static_cast<std::uint32_t>(members.size()));
+    algorithm->find(input, filters_of(task.filters, members), pairs_, counts_);
+    // One box alone is none that an algorithm looks at: the host does.
+    counts_.invalid_boxes = counts_.invalid_boxes || members.size() == 1;
+}
+
+void SlabWorker::find(const SlabTask& task, std::size_t s) {
+    const Stopwatch watch;
+    Device& device = context_.open(device_);
+    const double built_before = device.report().build_ms;
+    pairs_.clear();
+    counts_ = {};
+    if (task.counts_only) pairs_.count_only();
+    search(task, task.deal.members(s));
+    found_ = counted_ = pairs_.size();
+    if (task.counts_only && s > 0) {
+        const FindCounts counts = counts_;
+        pairs_.restart();
+        search(task, begun_before(task.deal, s));
+        counted_ -= pairs_.size();
+        counts_ = counts;
+    }
+    seconds_ = (watch.ms() - (device.report().build_ms - built_before)) / 1e3;
+}
+
+}  // namespace clinch::detail

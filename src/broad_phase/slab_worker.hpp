@@ -1,0 +1,70 @@
+// The pairs of one slab on one device.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "clinch/broad_phase.hpp"
+#include "src/broad_phase/algorithm.hpp"
+#include "src/broad_phase/slabs.hpp"
+#include "src/device/context_impl.hpp"
+
+namespace clinch::detail {
+
+/// What all workers of a call are given.
+struct SlabTask {
+    const AlgorithmRow& row;
+    View<const Aabb> boxes;
+    const FilterInput& filters;
+    const SlabDeal& deal;
+    bool counts_only;
+};
+
+/// Keeps its device's algorithms and buffers from call to call. One thread at a time; workers of different devices work
+/// side by side.
+class SlabWorker {
+public:
+    SlabWorker(Context::Impl& context, const BroadPhaseOptions& options) : context_(context), options_(options) {}
+
+    /// Works on this device from now on; what it had on another one is given back.
+    void assign(std::size_t device);
+    std::size_t device() const noexcept { return device_; }
+    /// As its algorithms are to have them.
+    BroadPhaseOptions& options() noexcept { return options_; }
+
+    /// Finds the pairs of slab s, or only counts them. Opens the device if need be.
+    void find(const SlabTask& task, std::size_t s);
+
+    /// Pairs of places in task.deal.members(s).
+    View<const Pair> pairs() const noexcept { return pairs_.view(); }
+    /// How many pairs were found in the slab.
+    std::uint64_t found() const noexcept { return found_; }
+    /// How many of them belong to it; only where they were counted.
+    std::uint64_t counted() const noexcept { return counted_; }
+    const FindCounts& counts() const noexcept { return counts_; }
+    /// Wall time of the last find(), without that of building kernels.
+    double seconds() const noexcept { return seconds_; }
+    void forget_pairs() { pairs_.clear(); }
+
+private:
+    void search(const SlabTask& task, const std::vector<std::uint32_t>& members);
+    const Buffer& send(Device& device, View<const Aabb> boxes, const std::vector<std::uint32_t>& members);
+    FilterInput filters_of(const FilterInput& filters, const std::vector<std::uint32_t>& members);
+
+    Context::Impl& context_;
+    BroadPhaseOptions options_;
+    std::size_t device_ = 0;
+    Buffer staging_;
+    std::map<const AlgorithmRow*, std::unique_ptr<BroadPhaseAlgorithm>> made_;
+    PairList pairs_;  // after `made_`, whose buffers it may map: it ends first
+    FindCounts counts_;
+    std::uint64_t found_ = 0, counted_ = 0;
+    double seconds_ = 0.0;
+    std::vector<std::uint32_t> group_, mask_;
+    std::vector<Motion> motion_;
+};
+
+}  // namespace clinch::detail

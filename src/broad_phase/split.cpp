@@ -1,0 +1,239 @@
+#include "src/broad_phase/split.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <utility>
+
+#include "src/broad_phase/slab_merge.hpp"
+#include "src/broad_phase/slab_worker.hpp"
+#include "src/device/crew.hpp"
+#include "src/device/stopwatch.hpp"
+
+namespace clinch::detail {
+namespace {
+
+// Less than this, by the boxes that several devices have, does not pay.
+constexpr double least_speed_up = 1.3;
+
+// How fast a device may be before it was measured.
+double guess_of(const DeviceInfo& info) {
+    const double lanes = info.type == DeviceType::Gpu ? 64.0 : info.lanes;
+    return std::max(1.0, info.compute_units * lanes);
+}
+
+std::vector<double> guesses_of(const Context::Impl& context) {
+    std::vector<double> guesses;
+    for (const DeviceInfo& info : context.infos) guesses.push_back(guess_of(info));
+    return guesses;
+}
+
+bool is_limit(const std::exception_ptr& thrown) {
+    try {
+        std::rethrow_exception(thrown);
+    } catch (const Error& error) {
+        return error.code() == ErrorCode::LimitExceeded;
+    } catch (...) {
+        return false;
+    }
+}
+
+// Joins the progress of slabs, and stops all when one has failed for good.
+class Progress {
+public:
+    struct Stopped {};
+    Progress(const std::function<void(double)>& tell, std::size_t slabs) : tell_(tell), done_(slabs, 0.0) {}
+    void stop() noexcept { stopped_ = true; }
+    // What slab i calls with the share of it that is done.
+    std::function<void(double)> of(std::size_t i) {
+        return [this, i](double done) {
+            if (stopped_) throw Stopped{};
+            if (!tell_) return;
+            const std::lock_guard<std::mutex> lock(mutex_);
+            done_[i] = done;
+            tell_(std::accumulate(done_.begin(), done_.end(), 0.0) / static_cast<double>(done_.size()));
+        };
+    }
+
+private:
+    const std::function<void(double)>& tell_;
+    std::vector<double> done_;
+    std::mutex mutex_;
+    std::atomic<bool> stopped_{false};
+};
+
+}  // namespace
+
+BroadSplit::BroadSplit(Context::Impl& context, const BroadPhaseOptions& options)
+    : context_(context), options_(options), shares_(guesses_of(context)) {}
+BroadSplit::~BroadSplit() = default;
+
+std::vector<std::size_t> BroadSplit::crew_for(const AlgorithmRow& row, std::uint64_t count) const {
+    std::vector<std::size_t> crew;
+    for (const std::size_t device : context_.crew()) {
+        const bool has_share = !forced_.empty() || shares_.fractions()[device] > 0.0;
+        if (has_share && runs_on(row, context_.infos[device])) crew.push_back(device);
+    }
+    const std::uint64_t most = count / std::max<std::uint64_t>(1, context_.least_boxes_a_device);
+    crew.resize(static_cast<std::size_t>(std::min<std::uint64_t>({crew.size(), most, Slabs::most})));
+    return crew;
+}
+
+std::vector<double> BroadSplit::fractions_of(const std::vector<std::size_t>& crew) const {
+    std::vector<double> fractions;
+    for (std::size_t k = 0; k < crew.size(); ++k)
+        fractions.push_back(forced_.empty() ? shares_.fractions()[crew[k]] : k < forced_.size() ? forced_[k] : 0.0);
+    const double sum = std::accumulate(fractions.begin(), fractions.end(), 0.0);
+    for (double& fraction : fractions) fraction /= sum;
+    return fractions;
+}
+
+bool BroadSplit::pays(const AlgorithmRow& row, std::uint64_t count) const {
+    return row.needs_device && context_.infos.size() > 1 && crew_for(row, count).size() > 1;
+}
+
+// A worker a slab, with its device.
+void BroadSplit::prepare(const std::vector<std::size_t>& crew) {
+    while (workers_.size() < crew.size()) workers_.push_back(std::make_unique<SlabWorker>(context_, options_));
+    workers_.resize(crew.size());
+    for (std::size_t s = 0; s < crew.size(); ++s) {
+        workers_[s]->assign(crew[s]);
+        workers_[s]->options().max_pairs = options_.max_pairs;
+    }
+}
+
+bool BroadSplit::find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
+                      FindCounts& counts) {
+    warnings_.clear();
+    const std::vector<std::size_t> crew = crew_for(row, boxes.count());
+    const View<const Aabb> on_host = boxes.on_host();
+    const Slabs slabs = choose_slabs(on_host, fractions_of(crew));
+    if (forced_.empty() && static_cast<double>(crew.size()) < least_speed_up * (1.0 + slabs.copies)) return false;
+    deal_.deal(on_host, slabs);
+    prepare(crew);
+    const SlabTask task{row, on_host, filters, deal_, pairs.counts_only()};
+    run(task);
+    measure();
+    gather(task.counts_only, pairs, counts);
+    check_limit(pairs.size(), options_);
+    return true;
+}
+
+// All slabs; those of a device that fails once more, on others.
+void BroadSplit::run(const SlabTask& task) {
+    std::vector<std::size_t> which(workers_.size());
+    std::iota(which.begin(), which.end(), 0);
+    while (!which.empty()) {
+        const std::vector<std::exception_ptr> thrown = run_once(task, which);
+        for (const std::exception_ptr& error : thrown) {
+            if (error == nullptr || is_device_fault(error)) continue;
+            if (is_limit(error)) throw_limit(task);
+            std::rethrow_exception(error);
+        }
+        which = reassign(which, thrown);
+    }
+}
+
+// Some of the slabs, each device those it has, one after the other. What each slab threw.
+std::vector<std::exception_ptr> BroadSplit::run_once(const SlabTask& task, const std::vector<std::size_t>& which) {
+    std::map<std::size_t, std::vector<std::size_t>> of_device;  // places in `which`
+    for (std::size_t i = 0; i < which.size(); ++i) of_device[workers_[which[i]]->device()].push_back(i);
+    std::vector<std::vector<std::size_t>> lists;
+    for (auto& [device, list] : of_device) lists.push_back(std::move(list));
+    std::vector<std::exception_ptr> thrown(which.size());
+    Progress progress(options_.progress, which.size());
+    run_crew(lists.size(), [&](std::size_t k) {
+        for (const std::size_t i : lists[k]) {
+            SlabWorker& worker = *workers_[which[i]];
+            worker.options().progress = progress.of(i);
+            try {
+                worker.find(task, which[i]);
+            } catch (const Progress::Stopped&) {
+                // Another one's failure ends the call.
+            } catch (...) {
+                thrown[i] = std::current_exception();
+                if (!is_device_fault(thrown[i])) progress.stop();
+            }
+            worker.options().progress = nullptr;
+        }
+    });
+    return thrown;
+}
+
+// Retires the devices that failed and gives their slabs to others. Returns the slabs that are to be done again.
+std::vector<std::size_t> BroadSplit::reassign(const std::vector<std::size_t>& which,
+                                              const std::vector<std::exception_ptr>& thrown) {
+    std::vector<std::size_t> again;
+    for (std::size_t i = 0; i < which.size(); ++i) {
+        if (thrown[i] == nullptr) continue;
+        again.push_back(which[i]);
+        const std::size_t device = workers_[which[i]]->device();
+        if (!context_.in_use(device)) continue;
+        const std::string why = message_of(thrown[i]);
+        if (!context_.retire(device, why)) std::rethrow_exception(thrown[i]);
+        shares_.retire(device);
+        warnings_.push_back("device " + std::to_string(device) + " ('" + context_.infos[device].name +
+                            "') failed and is not used any more: " + why);
+    }
+    const std::vector<std::size_t> left = context_.crew();
+    for (std::size_t i = 0; i < again.size(); ++i) workers_[again[i]]->assign(left[i % left.size()]);
+    return again;
+}
+
+// More pairs than are allowed: how many there are.
+void BroadSplit::throw_limit(const SlabTask& task) {
+    for (const auto& worker : workers_) {
+        worker->forget_pairs();
+        worker->options().max_pairs = std::numeric_limits<std::uint64_t>::max();
+    }
+    run({task.row, task.boxes, task.filters, task.deal, true});
+    std::uint64_t pairs = 0;
+    for (const auto& worker : workers_) pairs += worker->counted();
+    check_limit(pairs, options_);
+    throw Error(ErrorCode::LimitExceeded, "more pairs were found than are allowed (max_pairs)");
+}
+
+void BroadSplit::gather(bool counts_only, PairList& pairs, FindCounts& counts) {
+    SlabLists lists;
+    for (const auto& worker : workers_) {
+        const FindCounts& found = worker->counts();
+        counts.box_tests += found.box_tests;
+        counts.pairs_filtered += found.pairs_filtered;
+        counts.static_pairs += found.static_pairs;
+        counts.still += found.still;
+        counts.boxes_inside += found.boxes_inside;
+        counts.invalid_boxes = counts.invalid_boxes || found.invalid_boxes;
+        if (counts_only) pairs.add_count(worker->counted());
+        lists.push_back(worker->pairs());
+    }
+    if (counts_only) return;
+    const Stopwatch watch;
+    merge_slabs(deal_, lists, options_.order == Order::Sorted, pairs);
+    counts.download_ms += watch.ms();
+}
+
+std::vector<DeviceWork> BroadSplit::work() const {
+    std::vector<DeviceWork> work;
+    for (std::size_t s = 0; s < workers_.size(); ++s)
+        work.push_back({static_cast<std::uint32_t>(workers_[s]->device()), deal_.members(s).size(),
+                        workers_[s]->found(), workers_[s]->seconds() * 1e3});
+    return work;
+}
+
+void BroadSplit::measure() {
+    if (!warnings_.empty()) return;
+    std::vector<Shares::Measure> measures(context_.infos.size());
+    for (std::size_t s = 0; s < workers_.size(); ++s)
+        measures[workers_[s]->device()] = {static_cast<double>(deal_.members(s).size()), workers_[s]->seconds()};
+    shares_.measured(measures);
+}
+
+void BroadSplit::forget_pairs() {
+    for (const auto& worker : workers_) worker->forget_pairs();
+}
+
+}  // namespace clinch::detail

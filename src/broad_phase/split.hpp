@@ -1,0 +1,67 @@
+// One broad phase on several devices: each finds the pairs of one slab of space, with whatever algorithm [thesis 5.2].
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "clinch/broad_phase.hpp"
+#include "src/broad_phase/algorithm.hpp"
+#include "src/broad_phase/slab_worker.hpp"
+#include "src/broad_phase/slabs.hpp"
+#include "src/device/context_impl.hpp"
+#include "src/schedule/shares.hpp"
+
+namespace clinch::detail {
+
+/// Keeps, of each device, its algorithms and buffers, and how fast it was.
+class BroadSplit {
+public:
+    BroadSplit(Context::Impl& context, const BroadPhaseOptions& options);
+    ~BroadSplit();
+    BroadSplit(const BroadSplit&) = delete;
+    BroadSplit& operator=(const BroadSplit&) = delete;
+
+    /// Whether `count` boxes are worth more than one device to `row`. Opens none.
+    bool pays(const AlgorithmRow& row, std::uint64_t count) const;
+    /// As BroadPhaseAlgorithm::find, to the byte; `pairs` keeps or counts them. A device that fails is retired, and
+    /// another one does its slab; when none is left what it threw leaves. False, with nothing done, if so many boxes
+    /// reach over the cuts that it does not pay.
+    bool find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
+              FindCounts& counts);
+    /// For tests: shares of the devices, the primary first, in place of those that were measured.
+    void force(std::vector<double> fractions) { forced_ = std::move(fractions); }
+    /// What each device did in the last call.
+    std::vector<DeviceWork> work() const;
+    /// Devices that failed in the last call.
+    const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+    std::size_t host_bytes() const noexcept { return deal_.host_bytes(); }
+    /// Unmaps the lists of slabs, which other work on the devices may write over.
+    void forget_pairs();
+
+private:
+    std::vector<std::size_t> crew_for(const AlgorithmRow& row, std::uint64_t count) const;
+    std::vector<double> fractions_of(const std::vector<std::size_t>& crew) const;
+    void prepare(const std::vector<std::size_t>& crew);
+    void run(const SlabTask& task);
+    std::vector<std::exception_ptr> run_once(const SlabTask& task, const std::vector<std::size_t>& which);
+    std::vector<std::size_t> reassign(const std::vector<std::size_t>& which,
+                                      const std::vector<std::exception_ptr>& thrown);
+    [[noreturn]] void throw_limit(const SlabTask& task);
+    void gather(bool counts_only, PairList& pairs, FindCounts& counts);
+    void measure();
+
+    Context::Impl& context_;
+    const BroadPhaseOptions& options_;
+    Shares shares_;  // of the devices of the context
+    std::vector<double> forced_;
+    SlabDeal deal_;
+    std::vector<std::unique_ptr<SlabWorker>> workers_;  // of each slab
+    std::vector<std::string> warnings_;
+};
+
+}  // namespace clinch::detail

@@ -1,0 +1,128 @@
+// Cuts through space: each pair belongs to one slab, where both of its boxes are; lists of slabs become one.
+#include "src/broad_phase/slabs.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <limits>
+
+#include "bench/scenes/boxes.hpp"
+#include "src/broad_phase/slab_merge.hpp"
+#include "tests/broad_phase/oracle.hpp"
+#include "tests/random.hpp"
+
+using namespace clinch;
+using namespace clinch::detail;
+
+namespace {
+
+std::vector<double> random_fractions(std::size_t count, test::Random& random) {
+    std::vector<double> fractions;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+        fractions.push_back(random.below(6) == 0 ? 0.0 : random.between(0.01, 1.0));
+        sum += fractions.back();
+    }
+    if (sum == 0.0) fractions[0] = sum = 1.0;
+    for (double& fraction : fractions) fraction /= sum;
+    return fractions;
+}
+
+// Pairs among the members of a slab, as an algorithm finds them: numbered by their places.
+std::vector<Pair> pairs_in(const std::vector<Aabb>& boxes, const std::vector<std::uint32_t>& members) {
+    std::vector<Aabb> own;
+    for (const std::uint32_t i : members) own.push_back(boxes[i]);
+    return test::pairs_by_hand(own);
+}
+
+std::vector<Pair> merged(const SlabDeal& deal, const std::vector<std::vector<Pair>>& found, bool sorted) {
+    PairList list;
+    merge_slabs(deal, {found.begin(), found.end()}, sorted, list);
+    const View<const Pair> pairs = list.view();
+    return {pairs.begin(), pairs.end()};
+}
+
+}  // namespace
+
+TEST_CASE("lists of slabs become the list of all boxes, each pair once", "[host]") {
+    const std::uint64_t seed = 51;
+    INFO("seed " << seed);
+    test::Random random(seed);
+    for (const scenes::BoxKind& kind : scenes::box_kinds())
+        for (int round = 0; round < 4; ++round) {
+            const std::size_t n = 2 + random.below(kind.all_pairs ? 60 : 1500), count = 1 + random.below(7);
+            const std::vector<Aabb> boxes = scenes::make_boxes(kind.name, n, random.below(100));
+            const Slabs slabs = choose_slabs(boxes, random_fractions(count, random));
+            INFO(kind.name << ", " << n << " boxes, " << count << " slabs across axis " << slabs.axis);
+            REQUIRE(slabs.count() == count);
+            CHECK(std::is_sorted(slabs.cuts.begin(), slabs.cuts.end()));
+            SlabDeal deal;
+            deal.deal(boxes, slabs);
+            std::vector<std::vector<Pair>> found;
+            for (std::size_t s = 0; s < count; ++s) {
+                CHECK(std::is_sorted(deal.members(s).begin(), deal.members(s).end()));
+                found.push_back(pairs_in(boxes, deal.members(s)));
+            }
+            const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+            CHECK(merged(deal, found, true) == expected);
+            for (std::vector<Pair>& list : found)
+                for (std::size_t i = list.size(); i > 1; --i) std::swap(list[i - 1], list[random.below(i)]);
+            std::vector<Pair> any = merged(deal, found, false);
+            std::sort(any.begin(), any.end());
+            CHECK(any == expected);
+        }
+}
+
+TEST_CASE("many pairs are merged in many parts", "[host]") {
+    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 30000, 4);
+    SlabDeal deal;
+    deal.deal(boxes, choose_slabs(boxes, {0.4, 0.1, 0.5}));
+    std::vector<std::vector<Pair>> found;
+    for (std::size_t s = 0; s < deal.slabs(); ++s) {
+        std::vector<Aabb> own;
+        for (const std::uint32_t i : deal.members(s)) own.push_back(boxes[i]);
+        found.push_back(test::pairs_by_sweep(own));
+    }
+    const std::vector<Pair> expected = test::pairs_by_sweep(boxes);
+    REQUIRE(expected.size() > 70000);
+    CHECK(merged(deal, found, true) == expected);
+    std::vector<Pair> any = merged(deal, found, false);
+    std::sort(any.begin(), any.end());
+    CHECK(any == expected);
+}
+
+TEST_CASE("slabs hold the share of boxes that was asked for, across the axis that fewest reach over", "[host]") {
+    std::vector<Aabb> boxes;
+    test::Random random(7);
+    for (int i = 0; i < 20000; ++i) {  // long on x and z
+        const auto at = [&] { return static_cast<float>(random.between(0.0, 100.0)); };
+        const float x = at(), y = at(), z = at();
+        boxes.push_back({{x, y, z}, {x + 60.0f, y + 0.01f, z + 30.0f}});
+    }
+    const std::vector<double> fractions{0.1, 0.6, 0.3};
+    const Slabs slabs = choose_slabs(boxes, fractions);
+    CHECK(slabs.axis == 1);
+    CHECK(slabs.copies < 0.01);
+    SlabDeal deal;
+    deal.deal(boxes, slabs);
+    for (std::size_t s = 0; s < 3; ++s)
+        CHECK(static_cast<double>(deal.members(s).size()) / 20000.0 == Approx(fractions[s]).margin(0.03));
+}
+
+TEST_CASE("what is no box is met in one slab at least, and boxes without end in all", "[host]") {
+    constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    std::vector<Aabb> boxes = scenes::make_boxes("uniform", 100, 2);
+    boxes.insert(boxes.end(),
+                 {{{nan, nan, nan}, {nan, nan, nan}}, {{9, 9, 9}, {1, 1, 1}}, {{-inf, -inf, -inf}, {inf, inf, inf}}});
+    SlabDeal deal;
+    deal.deal(boxes, choose_slabs(boxes, {0.25, 0.25, 0.5}));
+    std::vector<int> met(boxes.size(), 0);
+    for (std::size_t s = 0; s < deal.slabs(); ++s)
+        for (const std::uint32_t i : deal.members(s)) ++met[i];
+    CHECK(*std::min_element(met.begin(), met.end()) == 1);
+    CHECK(met[102] == 3);
+    const std::vector<Aabb> none(10, boxes[100]);
+    CHECK(choose_slabs(none, {0.5, 0.5}).count() == 2);
+    deal.deal({}, choose_slabs({}, {0.5, 0.5}));
+    CHECK(deal.boxes() == 0);
+    CHECK(merged(deal, {{}, {}}, true).empty());
+}

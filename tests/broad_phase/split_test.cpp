@@ -1,0 +1,183 @@
+// One broad phase on several devices: the bytes of one, for every algorithm, whatever the shares.
+#include "src/broad_phase/split.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <limits>
+#include <memory>
+
+#include "bench/scenes/boxes.hpp"
+#include "src/broad_phase/broad_phase_impl.hpp"
+#include "tests/broad_phase/every_algorithm.hpp"
+#include "tests/broad_phase/oracle.hpp"
+#include "tests/device/devices.hpp"
+
+using namespace clinch;
+
+namespace {
+
+std::vector<double> random_fractions(std::size_t count, test::Random& random) {
+    std::vector<double> fractions;
+    for (std::size_t i = 0; i < count; ++i) fractions.push_back(random.below(6) == 0 ? 0.0 : random.between(0.01, 1.0));
+    fractions[random.below(count)] = 0.5;
+    return fractions;
+}
+
+// Device algorithms that all devices run.
+std::vector<std::string> names_for(const Context& context) {
+    std::vector<std::string> names;
+    for (const detail::AlgorithmRow& row : detail::registry()) {
+        bool all = row.needs_device;
+        for (const DeviceInfo& info : context.devices()) all = all && detail::runs_on(row, info);
+        if (all) names.emplace_back(row.name);
+    }
+    return names;
+}
+
+// A BroadPhase that splits whatever it is given.
+class Splitter {
+public:
+    Splitter(Context& context, const BroadPhaseOptions& options) : broad_phase_(context, options) {
+        context.impl().least_boxes_a_device = 1;
+        broad_phase_.impl().split = std::make_unique<detail::BroadSplit>(context.impl(), broad_phase_.impl().options);
+        even();
+    }
+    void even() { force(std::vector<double>(broad_phase_.impl().context.infos.size(), 1.0)); }
+    void force(const std::vector<double>& fractions) { broad_phase_.impl().split->force(fractions); }
+    BroadPhase& get() { return broad_phase_; }
+
+private:
+    BroadPhase broad_phase_;
+};
+
+}  // namespace
+
+TEST_CASE("200 random scenes on 2, 3 and 4 devices: the oracle's bytes with any shares", "[device]") {
+    const std::uint64_t seed = 20261122;
+    INFO("seed " << seed);
+    test::Random random(seed);
+    const std::vector<scenes::BoxKind> kinds = scenes::box_kinds();
+    int scene = 0;
+    for (const std::uint32_t devices : {2u, 3u, 4u}) {
+        Context context = test::several(devices);
+        const std::vector<std::string> names = names_for(context);
+        std::vector<std::unique_ptr<Splitter>> splitters;
+        for (const std::string& name : names) {
+            BroadPhaseOptions options;
+            options.algorithm = name;
+            if (random.below(3) == 0) options.scratch_bytes = 200000;
+            splitters.push_back(std::make_unique<Splitter>(context, options));
+        }
+        for (int round = 0; round < 67; ++round, ++scene) {
+            Splitter& splitter = *splitters[static_cast<std::size_t>(scene) % names.size()];
+            const scenes::BoxKind& kind = kinds[random.below(kinds.size())];
+            const std::size_t n = devices + random.below(kind.all_pairs ? 200 : 2500);
+            const std::vector<Aabb> boxes = scenes::make_boxes(kind.name, n, random.below(1000));
+            const bool filtered = random.below(3) == 0;
+            const test::Filters filters = test::random_filters(filtered ? n : 0, random);
+            const FilterColumns columns = filtered ? filters.columns() : FilterColumns{};
+            INFO("scene " << scene << ": " << kind.name << ", " << n << " boxes on " << devices << " devices, "
+                          << splitter.get().impl().options.algorithm << (filtered ? ", filtered" : ""));
+            splitter.force(random_fractions(devices, random));
+            const std::vector<Pair> expected = test::pairs_by_hand(boxes, columns);
+            CHECK(test::same(splitter.get().find(boxes, columns), expected));
+            const Report& report = splitter.get().report();
+            CHECK(report.pairs == expected.size());
+            CHECK(report.broad_split.size() == devices);
+            CHECK(report.rejected.empty());
+            CHECK(report.warnings.empty());
+            if (round % 4 == 0) CHECK(splitter.get().count(boxes, columns) == expected.size());
+        }
+    }
+}
+
+TEST_CASE("a split in any order has the same pairs, and a stream goes to one device", "[device]") {
+    Context context = test::several(3);
+    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 4000, 5);
+    const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+    for (const std::string& name : names_for(context)) {
+        INFO(name);
+        BroadPhaseOptions options;
+        options.algorithm = name;
+        options.order = Order::Any;
+        Splitter splitter(context, options);
+        const View<const Pair> found = splitter.get().find(boxes);
+        std::vector<Pair> pairs(found.begin(), found.end());
+        std::sort(pairs.begin(), pairs.end());
+        CHECK(pairs == expected);
+        CHECK(splitter.get().report().broad_split.size() == 3);
+        pairs.clear();
+        splitter.get().stream(boxes,
+                              [&](View<const Pair> piece) { pairs.insert(pairs.end(), piece.begin(), piece.end()); });
+        std::sort(pairs.begin(), pairs.end());
+        CHECK(pairs == expected);
+    }
+}
+
+TEST_CASE("a split names what is no box, and the true count of too many pairs", "[device]") {
+    Context context = test::several(3);
+    std::vector<Aabb> boxes = scenes::make_boxes("uniform", 2000, 6);
+    const std::uint64_t pairs = test::pairs_by_hand(boxes).size();
+    REQUIRE(pairs > 300);
+    for (const std::string& name : names_for(context)) {
+        INFO(name);
+        BroadPhaseOptions options;
+        options.algorithm = name;
+        options.max_pairs = pairs - 1;
+        Splitter splitter(context, options);
+        CHECK_THROWS_WITH(splitter.get().find(boxes),
+                          Catch::StartsWith("there are " + std::to_string(pairs) + " pairs and at most "));
+        options.max_pairs = 10;  // less than a slab has
+        Splitter strict(context, options);
+        CHECK_THROWS_WITH(strict.get().find(boxes),
+                          Catch::StartsWith("there are " + std::to_string(pairs) + " pairs and at most "));
+        options.max_pairs = pairs;
+        Splitter enough(context, options);
+        CHECK(enough.get().find(boxes).size() == pairs);
+        std::vector<Aabb> some = boxes;
+        some[1234].min[2] = std::numeric_limits<float>::quiet_NaN();
+        enough.get().find(some);
+        REQUIRE(enough.get().report().rejected.size() == 1);
+        CHECK(enough.get().report().rejected[0].body == 1234);
+    }
+}
+
+TEST_CASE("no device is opened for boxes that are too few for it", "[device]") {
+    Context context = test::several(3);
+    context.impl().least_boxes_a_device = 1000;
+    BroadPhaseOptions options;
+    options.algorithm = "brute";
+    BroadPhase broad_phase(context, options);
+    const auto opened = [&] {
+        const std::vector<DeviceReport> reports = context.report();
+        return std::count_if(reports.begin(), reports.end(), [](const DeviceReport& r) { return r.opened; });
+    };
+    broad_phase.find(scenes::make_boxes("cubes", 1999, 1));
+    CHECK(broad_phase.report().broad_split.empty());
+    CHECK(opened() == 1);
+    broad_phase.find(scenes::make_boxes("cubes", 2000, 1));
+    CHECK(broad_phase.report().broad_split.size() == 2);
+    CHECK(opened() == 2);
+    // All in one place: every box reaches over every cut.
+    broad_phase.find(std::vector<Aabb>(3000, Aabb{{0, 0, 0}, {1, 1, 1}}));
+    CHECK(broad_phase.report().pairs == 3000u * 2999u / 2u);
+}
+
+TEST_CASE("what a split's progress throws ends it", "[device]") {
+    Context context = test::several(2);
+    BroadPhaseOptions options;
+    options.algorithm = "brute";
+    options.scratch_bytes = 1 << 16;
+    bool stop = true;
+    double last = 0.0;
+    options.progress = [&](double done) {
+        if (stop) throw std::runtime_error("enough");
+        last = std::max(last, done);
+    };
+    Splitter splitter(context, options);
+    const std::vector<Aabb> boxes = scenes::make_boxes("cubes", 3000, 9);
+    CHECK_THROWS_WITH(splitter.get().find(boxes), "enough");
+    stop = false;
+    CHECK(test::same(splitter.get().find(boxes), test::pairs_by_hand(boxes)));
+    CHECK(last == Approx(1.0));
+}
