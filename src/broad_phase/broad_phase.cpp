@@ -7,7 +7,6 @@
 
 #include "clinch/interop/opencl.hpp"
 #include "src/broad_phase/broad_phase_impl.hpp"
-#include "src/device/opencl_error.hpp"
 #include "src/device/stopwatch.hpp"
 
 namespace clinch {
@@ -305,13 +304,7 @@ View<const Pair> find_pairs(BroadPhase& broad_phase, cl_mem boxes, std::size_t c
     check_count(count);
     BroadPhase::Impl& impl = broad_phase.impl();
     detail::Device& device = impl.device();
-    std::size_t bytes = 0;
-    cl_context context = nullptr;
-    detail::check(clGetMemObjectInfo(boxes, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr), "clGetMemObjectInfo");
-    detail::check(clGetMemObjectInfo(boxes, CL_MEM_CONTEXT, sizeof context, &context, nullptr), "clGetMemObjectInfo");
-    if (context != device.context())
-        throw Error(ErrorCode::InvalidArgument,
-                    "the buffer of boxes belongs to another OpenCL context than the broad phase");
+    const std::size_t bytes = device.bytes_of(boxes, "boxes");
     if (first > bytes / sizeof(Aabb) || count > bytes / sizeof(Aabb) - first)
         throw Error(ErrorCode::InvalidArgument, "the buffer of boxes has " + std::to_string(bytes) + " bytes; " +
                                                     std::to_string(count) + " boxes from box " + std::to_string(first) +

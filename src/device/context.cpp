@@ -11,7 +11,11 @@
 namespace clinch {
 
 detail::Device& Context::Impl::open(std::size_t i) {
-    if (devices[i] == nullptr) devices[i] = std::make_unique<detail::Device>(infos[i], ids[i], options);
+    if (devices[i] == nullptr) {
+        detail::FaultHook hook;
+        if (fault_hook) hook = [ask = fault_hook, i](const char* call) { return ask(i, call); };
+        devices[i] = std::make_unique<detail::Device>(infos[i], ids[i], options, std::move(hook));
+    }
     return *devices[i];
 }
 

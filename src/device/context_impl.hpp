@@ -1,6 +1,7 @@
 // What stands behind clinch::Context: the chosen devices, opened one by one when first used.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct Context::Impl {
     std::vector<cl_device_id> ids;                         // retained: see DeviceList in discovery.hpp
     std::vector<std::shared_ptr<const void>> id_owners;    // keeps sub-devices alive
     std::vector<std::unique_ptr<detail::Device>> devices;  // null until opened
+    /// For tests, to be set before a device is opened: as detail::FaultHook, with the number of the device whose call
+    /// it is. Devices may be worked on by a thread each; the test sees to it that the hook bears that.
+    std::function<cl_int(std::size_t device, const char* call)> fault_hook;
 
     /// Opens device i if it is not open yet.
     detail::Device& open(std::size_t i);
