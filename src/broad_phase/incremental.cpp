@@ -58,7 +58,7 @@ std::size_t Incremental::host_bytes() const noexcept {
 }
 
 void Incremental::make_kernels() {
-    if (query_old_) return;
+    if (query_old_) return;  // made last
     places_ = device_.kernel(module, "inc_places");
     run_ = device_.info().lanes > 1 ? 32 : 1;
     const std::string runs = "-DRUN=" + std::to_string(run_);
@@ -238,7 +238,7 @@ void Incremental::apply(BoxInput& boxes, const Changes& changes) {
 // Looks for the bodies that have left, and tests all live pairs.
 bool Incremental::search(BoxInput& boxes, const Changes& changes, const FilterInput& filters, FindCounts& counts) {
     SearchKernels& kernels = search_kernels_[filters.any() ? 1 : 0];
-    if (!kernels.movers) {
+    if (!kernels.movers) {  // made last
         kernels.grid = device_.kernel(module, "inc_query", PairSink::defines(filters));
         kernels.movers = device_.kernel(module, "inc_query_movers", PairSink::defines(filters));
     }

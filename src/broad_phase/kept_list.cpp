@@ -13,7 +13,7 @@ constexpr std::uint32_t halos_a_block = 32;
 }  // namespace
 
 void KeptList::begin(View<const Pair> pairs, std::uint32_t bodies, bool sorted) {
-    if (!edit_) {
+    if (!edit_) {  // made last
         locate_ = device_.kernel("broad_phase/kept_list", "list_locate");
         save_ = device_.kernel("broad_phase/kept_list", "list_save");
         edit_ = device_.kernel("broad_phase/kept_list", "list_edit");

@@ -31,12 +31,12 @@ void Slots::group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_
     n_ = static_cast<std::uint32_t>(pairs.size());
     with_rests_ = with_rests;
     float64_ = false;
-    if (!keys_kernel_) {
-        keys_kernel_ = device_.kernel(module, "bucket_keys");
+    if (!keys_kernel_) {  // made last
         slots_kernel_ = device_.kernel(module, "bucket_slots");
         table_ = device_.allocate(bucket_table().size(), "the table of buckets");
         device_.write(table_, bucket_table().data(), bucket_table().size());
         undecided_ = device_.allocate(most_buckets * sizeof(std::uint32_t), "the counts of undecided pairs");
+        keys_kernel_ = device_.kernel(module, "bucket_keys");
     }
     device_.clear(undecided_, most_buckets * sizeof(std::uint32_t));
     const std::uint32_t items = runs_for(n_), per_item = (n_ - 1) / items + 1;
@@ -113,10 +113,10 @@ std::array<std::uint32_t, 32> Slots::count_undecided() {
 BucketSlice Slots::undecided(std::size_t k, std::uint32_t count) {
     const BucketSlice& bucket = slices_[k];
     number_pairs(bucket.listed);
-    if (!open_count_) {
-        open_count_ = device_.kernel(module, "open_count");
+    if (!open_count_) {  // made last
         open_fill_ = device_.kernel(module, "open_fill");
         open_slots_ = device_.kernel(module, "open_slots");
+        open_count_ = device_.kernel(module, "open_count");
     }
     const std::uint32_t runs = runs_for(bucket.count), per_run = (bucket.count - 1) / runs + 1;
     device_.reserve(run_counts_, runs * sizeof(std::uint32_t), "the counts of runs");
@@ -174,9 +174,9 @@ std::vector<std::uint32_t> Slots::numbers(const BucketSlice& slice) {
 }
 
 std::uint32_t Slots::gather(bool only_pairs) {
-    if (!count_kernel_) {
-        count_kernel_ = device_.kernel(module, "contact_count");
+    if (!count_kernel_) {  // made last
         gather_kernel_ = device_.kernel(module, "contact_gather");
+        count_kernel_ = device_.kernel(module, "contact_count");
     }
     number_pairs(false);
     const std::uint32_t runs = runs_for(n_), per_run = (n_ - 1) / runs + 1;
