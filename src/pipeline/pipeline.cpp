@@ -229,8 +229,9 @@ void StepResult::Impl::step(const Scene& scene) {
 View<const Aabb> StepResult::Impl::boxes() {
     if (!on_device) return host_bounds ? host_bounds->boxes() : View<const Aabb>{};
     if (!boxes_read) {
-        boxes_read.emplace(rows);
-        broad.impl().device().read(device_bounds->boxes(), boxes_read->data(), rows * sizeof(Aabb));
+        std::vector<Aabb> read(rows);
+        broad.impl().device().read(device_bounds->boxes(), read.data(), rows * sizeof(Aabb));
+        boxes_read = std::move(read);
     }
     return *boxes_read;
 }
