@@ -165,16 +165,12 @@ bool BroadPhase::Impl::step(detail::BoxInput& boxes, const detail::Changes& chan
     pairs.clear();
     listed_boxes = 0;
     report = Report{};
-    try {
-        if (!measured("incremental", boxes, [&](detail::FindCounts& counts) {
-                return incremental->update(boxes, changes, filters, pairs, counts);
-            })) {
-            leave_steps();
-            return false;
-        }
-    } catch (...) {
+    // When it throws, the next run() leaves the steps: what that takes may fail as well.
+    if (!measured("incremental", boxes, [&](detail::FindCounts& counts) {
+            return incremental->update(boxes, changes, filters, pairs, counts);
+        })) {
         leave_steps();
-        throw;
+        return false;
     }
     report.skipped.unchanged = boxes.count() - std::min<std::uint64_t>(boxes.count(), changes.bodies.size());
     listed_boxes = boxes.count();
@@ -186,17 +182,21 @@ bool BroadPhase::Impl::step(detail::BoxInput& boxes, const detail::Changes& chan
 // there alone.
 void BroadPhase::Impl::leave_steps() {
     if (!incremental) return;
-    if (events.behind()) {
-        const detail::Mapping list = incremental->map_list();
-        events.hold({list.as<Pair>(), incremental->list_size()});
-    }
+    if (events.behind()) events.hold(incremental->last_list());
     incremental.reset();
+}
+
+View<const Pair> BroadPhase::Impl::find_to_step(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
+                                                const detail::FilterInput& filters, bool list_rejected) {
+    pairs.clear();
+    run(row, boxes, filters, list_rejected);
+    begin_steps(boxes, filters);
+    listed(boxes.count());
+    return pairs.view();
 }
 
 void BroadPhase::Impl::begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters) {
     const detail::Stopwatch watch;
-    const std::uint64_t count = listed_boxes;
-    listed_boxes = 0;
     const std::vector<Pair> list(pairs.view().begin(), pairs.view().end());
     pairs.clear();
     made.clear();  // their memory is needed now
@@ -211,10 +211,9 @@ void BroadPhase::Impl::begin_steps(detail::BoxInput& boxes, const detail::Filter
         pairs.adopt(incremental->map_list(), list.size());
     } else {
         incremental.reset();
-        steps_refused = count;
+        steps_refused = boxes.count();
         pairs.append(list);
     }
-    listed_boxes = count;
     note_memory();
     report.ms.broad += watch.ms();
     report.ms.total += watch.ms();
@@ -263,9 +262,7 @@ View<const Pair> BroadPhase::update(View<const Aabb> boxes, View<const std::uint
         }
     }
     detail::BoxInput all(boxes, impl_->staging);
-    impl_->find(row, all, {filters, 0}, true);
-    impl_->begin_steps(all, {filters, 0});
-    return impl_->pairs.view();
+    return impl_->find_to_step(row, all, {filters, 0}, true);
 }
 
 std::uint64_t BroadPhase::stream(View<const Aabb> boxes, const std::function<void(View<const Pair>)>& take,

@@ -45,8 +45,9 @@ struct BroadPhase::Impl {
     /// As find(), by what changed since the last call, boxes being in device memory. False: not done, and `boxes` may
     /// be as before the changes.
     bool step(detail::BoxInput& boxes, const detail::Changes& changes, const detail::FilterInput& filters);
-    /// Begins keeping pairs after find() of these boxes, if that pays. The list stays, elsewhere in memory.
-    void begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters);
+    /// As find(), and begins keeping pairs if that pays.
+    View<const Pair> find_to_step(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
+                                  const detail::FilterInput& filters, bool list_rejected);
     /// The last list once more, nothing having changed.
     View<const Pair> same_again();
     /// The same into `pairs` as it is set up.
@@ -55,6 +56,8 @@ struct BroadPhase::Impl {
 
 private:
     void listed(std::uint64_t count);
+    // After run() of these boxes. The list stays, elsewhere in memory.
+    void begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters);
     void leave_steps();
     void note_memory();
     template <class Search>

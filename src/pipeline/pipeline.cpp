@@ -122,9 +122,7 @@ View<const Pair> StepResult::Impl::find_changed(const detail::AlgorithmRow& row,
         if (sent.empty() && !filters_changed) return impl.same_again();
         if (impl.steps_pay(row, rows, sent.size())) {
             if (impl.step(input, {sent, nullptr, filters_changed}, filters)) return impl.pairs.view();
-            impl.find(row, input, filters, false);
-            impl.begin_steps(input, filters);
-            return impl.pairs.view();
+            return impl.find_to_step(row, input, filters, false);
         }
     }
     return impl.find(row, input, filters, false);
