@@ -80,9 +80,10 @@ void Slots::number_slots(const std::vector<std::uint64_t>& counts) {
     }
     // Room for every pair a second time: it may be undecided.
     const std::size_t slots = with_rests_ ? std::size_t{2} * slots_used_ + matrix().size() * block : slots_used_;
-    stride_ = std::max(stride_, column_stride(slots));
-    device_.reserve(answers_, stride_ * (answer_columns + (with_rests_ ? rest_columns : 0)) * sizeof(float), "answers");
-    device_.reserve(hits_, stride_ * sizeof(std::uint32_t), "the hits among pairs");
+    const std::uint64_t stride = std::max(stride_, column_stride(slots));
+    device_.reserve(answers_, stride * (answer_columns + (with_rests_ ? rest_columns : 0)) * sizeof(float), "answers");
+    device_.reserve(hits_, stride * sizeof(std::uint32_t), "the hits among pairs");
+    stride_ = stride;  // not sooner: a call that found no room is not to make the next ask for it
     device_.reserve(slot_of_, n_ * sizeof(std::uint32_t), "the slots of pairs");
     device_.reserve(numbers_, n_ * sizeof(std::uint32_t), "the numbers of pairs");
     device_.reserve(firsts_, most_buckets * sizeof(std::uint32_t), "the places of buckets");
@@ -187,8 +188,9 @@ std::uint32_t Slots::gather(bool only_pairs) {
     scan_.exclusive(run_counts_, runs, run_offsets_);
     const std::uint32_t count = scan_.total();
     if (count == 0) return 0;
-    contact_stride_ = std::max(contact_stride_, column_stride(count));
-    device_.reserve(contacts_, contact_stride_ * gathered_columns(only_pairs) * sizeof(std::uint32_t), "contacts");
+    const std::uint64_t stride = std::max(contact_stride_, column_stride(count));
+    device_.reserve(contacts_, stride * gathered_columns(only_pairs) * sizeof(std::uint32_t), "contacts");
+    contact_stride_ = stride;
     device_.launch(gather_kernel_.args(pairs_, hits_, slot_of_, n_, per_run, runs, run_offsets_, answers_, stride_,
                                        only_pairs ? 0u : 1u, float64_ ? 1u : 0u, contacts_, contact_stride_),
                    groups, group);

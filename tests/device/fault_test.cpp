@@ -377,6 +377,36 @@ TEST_CASE("a narrow phase bears the failure of any OpenCL call", "[device]") {
     }
 }
 
+TEST_CASE("a call that found no room leaves the next to ask for what it needs itself", "[device]") {
+    constexpr std::uint64_t seed = 31;
+    const Scene many = few_classes(250, seed), few = few_classes(30, seed);
+    const std::vector<Pair> many_pairs = test::all_pairs(many), few_pairs = test::all_pairs(few);
+    Context plenty(first_device()), tight(first_device());
+    tight.impl().infos[0].max_allocation = std::uint64_t{1} << 20;  // 1 MB in one buffer
+    NarrowPhase expected(plenty), narrow(tight);
+    const std::string contacts = test::bytes(expected.find(few, few_pairs));
+    CHECK(expected.find(many, many_pairs).size() > few_pairs.size());
+    CHECK_THROWS_AS(narrow.find(many, many_pairs), Error);
+    const std::string found_tight = test::bytes(narrow.find(few, few_pairs));
+    CHECK(found_tight == contacts);
+}
+
+TEST_CASE("a search that passed a limit leaves the next to ask for what it needs itself", "[device]") {
+    const std::vector<Aabb> crowd(1500, Aabb{{0, 0, 0}, {1, 1, 1}}), few(100, Aabb{{0, 0, 0}, {1, 1, 1}});
+    Context context(first_device());
+    for (const std::string& name : test::names_for(context.devices()[0])) {
+        if (!detail::algorithm_named(name).needs_device) continue;
+        INFO("algorithm " << name);
+        BroadPhaseOptions options = with_algorithm(name);
+        options.max_pairs = 10000;
+        BroadPhase broad(context, options);
+        CHECK_THROWS_AS(broad.find(crowd), Error);
+        const std::uint64_t held = context.report()[0].bytes;
+        CHECK(broad.find(few).size() == 4950);
+        CHECK(context.report()[0].bytes < held + (std::uint64_t{4} << 20));  // what was passed were 9 MB of pairs
+    }
+}
+
 TEST_CASE("a pipeline bears the failure of any OpenCL call", "[device]") {
     constexpr std::uint64_t seed = 29;
     // A scene with its pipeline.
