@@ -171,7 +171,7 @@ bool Incremental::step(BoxInput& boxes, const Changes& changes, const FilterInpu
 }
 
 std::vector<Pair> Incremental::last_list() {
-    const std::vector<Pair> now = list_.copy();
+    std::vector<Pair> now = list_.copy();
     if (!editing_) return now;
     std::vector<Pair> rest, last;
     std::set_difference(now.begin(), now.end(), added_.begin(), added_.end(), std::back_inserter(rest));
