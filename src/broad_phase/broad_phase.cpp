@@ -1,14 +1,14 @@
 #include "clinch/broad_phase.hpp"
 
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <sstream>
 #include <utility>
 
 #include "clinch/interop/opencl.hpp"
 #include "src/broad_phase/broad_phase_impl.hpp"
-#include "src/device/crew.hpp"
-#include "src/device/opencl_error.hpp"
+#include "src/device/failover.hpp"
 #include "src/device/stopwatch.hpp"
 
 namespace clinch {
@@ -89,8 +89,7 @@ bool BroadPhase::Impl::measured(const char* algorithm, detail::BoxInput& boxes, 
     try {
         if (!search(counts)) return false;
     } catch (...) {
-        told_before_failure = pairs.streams() ? pairs.size() : 0;
-        pairs.restart();
+        pairs.clear();
         throw;
     }
     report.ms.download = counts.download_ms;
@@ -159,42 +158,32 @@ void BroadPhase::Impl::find_on_one(const detail::AlgorithmRow& row, detail::BoxI
     algorithm->find(boxes, filters, pairs, counts);
 }
 
-void BroadPhase::Impl::run_once(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
-                                const detail::FilterInput& filters) {
-    measured(row.name, boxes, [&](detail::FindCounts& counts) {
-        if (!find_split(row, boxes, filters, counts)) find_on_one(row, boxes, filters, counts);
-        return true;
-    });
-}
-
-// After the failure that is being handled: whether another device can do it all. Then the one that failed is retired.
-bool BroadPhase::Impl::failed_over(const detail::BoxInput& boxes) {
-    const std::exception_ptr thrown = std::current_exception();
-    if (context.infos.size() < 2 || !boxes.is_on_host() || !detail::is_device_fault(thrown)) return false;
-    const std::size_t device = context.primary();
-    if (!context.retire(device, detail::message_of(thrown))) return false;
-    made.clear();
-    staging = detail::Buffer();
-    report.warnings.push_back("device " + std::to_string(device) + " ('" + context.infos[device].name +
-                              "') failed and is not used any more: " + detail::message_of(thrown));
-    return true;
-}
-
 void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
                            bool list_rejected) {
     listed_boxes = 0;
     leave_steps();
     report = Report{};
-    for (bool done = false; !done;) {
-        try {
-            run_once(row, boxes, filters);
-            done = true;
-        } catch (...) {
-            // Pairs that were handed over cannot be taken back.
-            if (told_before_failure > 0 || !row.needs_device || !failed_over(boxes)) throw;
-        }
-    }
+    measured(row.name, boxes, [&](detail::FindCounts& counts) {
+        if (!find_split(row, boxes, filters, counts)) find_on_one(row, boxes, filters, counts);
+        return true;
+    });
     if (any_invalid && list_rejected) report.rejected = rejected_boxes(boxes.on_host());
+}
+
+bool BroadPhase::Impl::drop_device() {
+    pairs.clear();
+    made.clear();
+    listed_boxes = 0;
+    bool events_known = true;
+    try {
+        leave_steps();
+    } catch (const Error&) {  // the list before was on the device alone
+        incremental.reset();
+        events.start_afresh();
+        events_known = false;
+    }
+    staging = detail::Buffer();
+    return events_known;
 }
 
 bool BroadPhase::Impl::steps_pay(const detail::AlgorithmRow& row, std::uint64_t count, std::uint64_t changed) const {
@@ -212,16 +201,12 @@ bool BroadPhase::Impl::step(detail::BoxInput& boxes, const detail::Changes& chan
     pairs.clear();
     listed_boxes = 0;
     report = Report{};
-    try {
-        if (!measured("incremental", boxes, [&](detail::FindCounts& counts) {
-                return incremental->update(boxes, changes, filters, pairs, counts);
-            })) {
-            leave_steps();
-            return false;
-        }
-    } catch (...) {
+    // When it throws, the next run() leaves the steps: what that takes may fail as well.
+    if (!measured("incremental", boxes, [&](detail::FindCounts& counts) {
+            return incremental->update(boxes, changes, filters, pairs, counts);
+        })) {
         leave_steps();
-        throw;
+        return false;
     }
     report.skipped.unchanged = boxes.count() - std::min<std::uint64_t>(boxes.count(), changes.bodies.size());
     listed_boxes = boxes.count();
@@ -233,17 +218,21 @@ bool BroadPhase::Impl::step(detail::BoxInput& boxes, const detail::Changes& chan
 // there alone.
 void BroadPhase::Impl::leave_steps() {
     if (!incremental) return;
-    if (events.behind()) {
-        const detail::Mapping list = incremental->map_list();
-        events.hold({list.as<Pair>(), incremental->list_size()});
-    }
+    if (events.behind()) events.hold(incremental->last_list());
     incremental.reset();
+}
+
+View<const Pair> BroadPhase::Impl::find_to_step(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
+                                                const detail::FilterInput& filters, bool list_rejected) {
+    pairs.clear();
+    run(row, boxes, filters, list_rejected);
+    begin_steps(boxes, filters);
+    listed(boxes.count());
+    return pairs.view();
 }
 
 void BroadPhase::Impl::begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters) {
     const detail::Stopwatch watch;
-    const std::uint64_t count = listed_boxes;
-    listed_boxes = 0;
     const std::vector<Pair> list(pairs.view().begin(), pairs.view().end());
     pairs.clear();
     made.clear();  // their memory is needed now
@@ -259,10 +248,9 @@ void BroadPhase::Impl::begin_steps(detail::BoxInput& boxes, const detail::Filter
         pairs.adopt(incremental->map_list(), list.size());
     } else {
         incremental.reset();
-        steps_refused = count;
+        steps_refused = boxes.count();
         pairs.append(list);
     }
-    listed_boxes = count;
     note_memory();
     report.ms.broad += watch.ms();
     report.ms.total += watch.ms();
@@ -283,10 +271,42 @@ BroadPhase::~BroadPhase() = default;
 BroadPhase::BroadPhase(BroadPhase&& other) noexcept = default;
 BroadPhase& BroadPhase::operator=(BroadPhase&& other) noexcept = default;
 
+// Runs `work`, which finds pairs of boxes of the host, on the device that is left.
+template <class Work>
+auto BroadPhase::Impl::in_any_case(const Work& work) -> decltype(work()) {
+    std::vector<std::string> warnings;
+    const auto result = detail::with_failover(context, warnings, work, [&] {
+        if (!drop_device())
+            warnings.emplace_back("the list of pairs before was lost with the device: all pairs are told as added");
+    });
+    report.warnings.insert(report.warnings.begin(), warnings.begin(), warnings.end());
+    return result;
+}
+
 View<const Pair> BroadPhase::find(View<const Aabb> boxes, const FilterColumns& filters) {
     check_count(boxes.size());
-    detail::BoxInput input(boxes, impl_->staging);
-    return impl_->find(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
+    return impl_->in_any_case([&] {
+        detail::BoxInput input(boxes, impl_->staging);
+        return impl_->find(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
+    });
+}
+
+View<const Pair> BroadPhase::Impl::update(View<const Aabb> boxes, View<const std::uint32_t> changed,
+                                          const FilterColumns& filters) {
+    const detail::AlgorithmRow& row = choose(boxes.size());
+    detail::BoxInput all(boxes, staging);
+    if (listed_boxes == 0 || !steps_pay(row, boxes.size(), changed.size()))
+        return find(choose(boxes.size(), seen(boxes, filters)), all, {filters, 0}, true);
+    if (incremental) {
+        std::vector<Aabb> rows(changed.size());
+        for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = boxes[changed[i]];
+        detail::BoxInput there(device(), staging.handle(), 0, static_cast<std::uint32_t>(boxes.size()));
+        if (step(there, {changed, rows.data(), false}, {filters, 0})) {
+            if (any_invalid) report.rejected = rejected_boxes(boxes);
+            return pairs.view();
+        }
+    }
+    return find_to_step(row, all, {filters, 0}, true);
 }
 
 View<const Pair> BroadPhase::update(View<const Aabb> boxes, View<const std::uint32_t> changed,
@@ -299,41 +319,46 @@ View<const Pair> BroadPhase::update(View<const Aabb> boxes, View<const std::uint
                                                         std::to_string(boxes.size()) + " boxes");
     if (impl_->listed_boxes != boxes.size() || boxes.empty()) return find(boxes, filters);
     if (changed.empty()) return impl_->same_again();
-    const detail::AlgorithmRow& row = impl_->choose(boxes.size());
-    if (!impl_->steps_pay(row, boxes.size(), changed.size())) return find(boxes, filters);
-    if (impl_->incremental) {
-        std::vector<Aabb> rows(changed.size());
-        for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = boxes[changed[i]];
-        detail::BoxInput there(impl_->device(), impl_->staging.handle(), 0, static_cast<std::uint32_t>(boxes.size()));
-        if (impl_->step(there, {changed, rows.data(), false}, {filters, 0})) {
-            if (impl_->any_invalid) impl_->report.rejected = rejected_boxes(boxes);
-            return impl_->pairs.view();
-        }
-    }
-    detail::BoxInput all(boxes, impl_->staging);
-    impl_->find(row, all, {filters, 0}, true);
-    impl_->begin_steps(all, {filters, 0});
-    return impl_->pairs.view();
+    return impl_->in_any_case([&] { return impl_->update(boxes, changed, filters); });
 }
 
 std::uint64_t BroadPhase::stream(View<const Aabb> boxes, const std::function<void(View<const Pair>)>& take,
                                  const FilterColumns& filters) {
     check_count(boxes.size());
     if (!take) throw Error(ErrorCode::InvalidArgument, "there is no function to take the pairs of a stream");
-    detail::BoxInput input(boxes, impl_->staging);
-    impl_->pairs.clear();
-    impl_->pairs.stream_to(take, impl_->options.stream_bytes / sizeof(Pair));
-    impl_->run(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
-    return impl_->report.pairs;
+    std::exception_ptr too_late;  // pairs that were handed over cannot be taken back
+    const std::uint64_t count = impl_->in_any_case([&] {
+        detail::BoxInput input(boxes, impl_->staging);
+        impl_->pairs.clear();
+        bool handed_over = false;
+        const auto hand_over = [&](View<const Pair> pairs) {
+            handed_over = true;
+            take(pairs);
+        };
+        const std::function<void(View<const Pair>)> taker = hand_over;
+        impl_->pairs.stream_to(taker, impl_->options.stream_bytes / sizeof(Pair));
+        try {
+            impl_->run(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
+        } catch (...) {
+            if (!handed_over) throw;
+            too_late = std::current_exception();
+            return std::uint64_t{0};
+        }
+        return impl_->report.pairs;
+    });
+    if (too_late) std::rethrow_exception(too_late);
+    return count;
 }
 
 std::uint64_t BroadPhase::count(View<const Aabb> boxes, const FilterColumns& filters) {
     check_count(boxes.size());
-    detail::BoxInput input(boxes, impl_->staging);
-    impl_->pairs.clear();
-    impl_->pairs.count_only();
-    impl_->run(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
-    return impl_->report.pairs;
+    return impl_->in_any_case([&] {
+        detail::BoxInput input(boxes, impl_->staging);
+        impl_->pairs.clear();
+        impl_->pairs.count_only();
+        impl_->run(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
+        return impl_->report.pairs;
+    });
 }
 
 View<const Pair> BroadPhase::added() const noexcept {
@@ -352,13 +377,7 @@ View<const Pair> find_pairs(BroadPhase& broad_phase, cl_mem boxes, std::size_t c
     check_count(count);
     BroadPhase::Impl& impl = broad_phase.impl();
     detail::Device& device = impl.device();
-    std::size_t bytes = 0;
-    cl_context context = nullptr;
-    detail::check(clGetMemObjectInfo(boxes, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr), "clGetMemObjectInfo");
-    detail::check(clGetMemObjectInfo(boxes, CL_MEM_CONTEXT, sizeof context, &context, nullptr), "clGetMemObjectInfo");
-    if (context != device.context())
-        throw Error(ErrorCode::InvalidArgument,
-                    "the buffer of boxes belongs to another OpenCL context than the broad phase");
+    const std::size_t bytes = device.bytes_of(boxes, "boxes");
     if (first > bytes / sizeof(Aabb) || count > bytes / sizeof(Aabb) - first)
         throw Error(ErrorCode::InvalidArgument, "the buffer of boxes has " + std::to_string(bytes) + " bytes; " +
                                                     std::to_string(count) + " boxes from box " + std::to_string(first) +

@@ -30,10 +30,9 @@ struct BroadPhase::Impl {
     detail::PairEvents events;                         // kept up to date if the options ask for it
     Report report;
     std::uint64_t most_host_bytes = 0;
-    std::uint64_t steps_refused = 0;        // number of boxes for which keeping pairs did not pay
-    std::uint64_t told_before_failure = 0;  // pairs that a stream had handed over when it failed
-    bool any_invalid = false;               // among the boxes of the last call
-    std::uint64_t listed_boxes = 0;         // boxes of the last call, if `pairs` is its list; else 0
+    std::uint64_t steps_refused = 0;  // number of boxes for which keeping pairs did not pay
+    bool any_invalid = false;         // among the boxes of the last call
+    std::uint64_t listed_boxes = 0;   // boxes of the last call, if `pairs` is its list; else 0
 
     Impl(Context& c, BroadPhaseOptions o);
     /// The algorithm for `count` boxes, given what the last report says and, if they are in host memory, `boxes`.
@@ -48,8 +47,16 @@ struct BroadPhase::Impl {
     /// As find(), by what changed since the last call, boxes being in device memory. False: not done, and `boxes` may
     /// be as before the changes.
     bool step(detail::BoxInput& boxes, const detail::Changes& changes, const detail::FilterInput& filters);
-    /// Begins keeping pairs after find() of these boxes, if that pays. The list stays, elsewhere in memory.
-    void begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters);
+    /// As find(), and begins keeping pairs if that pays.
+    View<const Pair> find_to_step(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
+                                  const detail::FilterInput& filters, bool list_rejected);
+    /// BroadPhase::update() after its checks; without a last list, find().
+    View<const Pair> update(View<const Aabb> boxes, View<const std::uint32_t> changed, const FilterColumns& filters);
+    /// Runs `work`, and if the device fails in it once more on another one.
+    template <class Work>
+    auto in_any_case(const Work& work) -> decltype(work());
+    /// Gives back what is kept on the device that all was on. False if events begin from nothing then.
+    bool drop_device();
     /// The last list once more, nothing having changed.
     View<const Pair> same_again();
     /// The same into `pairs` as it is set up.
@@ -61,9 +68,9 @@ private:
                     detail::FindCounts& counts);
     void find_on_one(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
                      detail::FindCounts& counts);
-    void run_once(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters);
-    bool failed_over(const detail::BoxInput& boxes);
     void listed(std::uint64_t count);
+    // After run() of these boxes. The list stays, elsewhere in memory.
+    void begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters);
     void leave_steps();
     void note_memory();
     template <class Search>

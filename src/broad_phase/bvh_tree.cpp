@@ -205,9 +205,9 @@ void BvhTree::build(BoxInput& boxes) {
 
 // Computes all blocks of boxes and all nodes in the order there is. Returns the sum of the sizes of nodes. Waits.
 double BvhTree::fit(BoxInput& boxes, std::uint32_t n) {
-    if (!leaves_kernel_) {
-        leaves_kernel_ = device_.kernel("broad_phase/bvh", "bvh_leaves");
+    if (!leaves_kernel_) {  // made last
         level_kernel_ = device_.kernel("broad_phase/bvh", "bvh_level");
+        leaves_kernel_ = device_.kernel("broad_phase/bvh", "bvh_leaves");
     }
     const std::size_t group = device_.group_size();
     std::uint32_t first_measure = 0;

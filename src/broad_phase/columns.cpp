@@ -5,9 +5,9 @@
 namespace clinch::detail {
 
 void BoxColumns::make(BoxInput& boxes, std::uint32_t block) {
-    if (!kernel_) {
-        kernel_ = device_.kernel("broad_phase/columns", "columns");
+    if (!kernel_) {  // made last
         invalid_ = device_.allocate(sizeof(std::uint32_t), "a flag");
+        kernel_ = device_.kernel("broad_phase/columns", "columns");
     }
     const std::uint64_t padded = (std::uint64_t{boxes.count()} + block - 1) / block * block;
     if (padded > std::numeric_limits<std::uint32_t>::max())

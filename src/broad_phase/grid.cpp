@@ -160,10 +160,10 @@ std::uint32_t Grid::entries_a_task() const {
 void Grid::make_entries(BoxInput& boxes) {
     const GridFrame& frame = host_frame_;
     if (!sort_) sort_.emplace(device_);
-    if (!keys_kernel_) {
-        keys_kernel_ = device_.kernel("broad_phase/grid", "grid_keys");
+    if (!keys_kernel_) {  // made last
         gather_kernel_ = device_.kernel("broad_phase/grid", "grid_gather");
         starts_kernel_ = device_.kernel("broad_phase/grid", "grid_starts");
+        keys_kernel_ = device_.kernel("broad_phase/grid", "grid_keys");
     }
     const std::uint32_t n = boxes.count();
     stride_ = std::uint64_t{n} + padding;

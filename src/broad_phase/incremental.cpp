@@ -58,7 +58,7 @@ std::size_t Incremental::host_bytes() const noexcept {
 }
 
 void Incremental::make_kernels() {
-    if (query_old_) return;
+    if (query_old_) return;  // made last
     places_ = device_.kernel(module, "inc_places");
     run_ = device_.info().lanes > 1 ? 32 : 1;
     const std::string runs = "-DRUN=" + std::to_string(run_);
@@ -88,6 +88,7 @@ bool Incremental::build(BoxInput& boxes, const FilterInput& filters, View<const 
     grid_.keep_entries_only();
     any_invalid_ = grid_.any_invalid();
     list_.begin(pairs, n, sorted);
+    editing_ = false;
     filter_rows_.clear();
     if (filters.any()) {
         filter_rows_.reserve(n);
@@ -114,18 +115,16 @@ bool Incremental::update(BoxInput& boxes, const Changes& changes, const FilterIn
     try {
         // Filters that come or go concern all.
         done = filters.any() != filter_rows_.empty() && step(boxes, ordered(changes), filters, counts);
+        const Stopwatch watch;
+        if (done) pairs.adopt(list_.map(), list_.size());
+        counts.download_ms += watch.ms();
     } catch (...) {
         forget();
         throw;
     }
-    if (!done) {
-        forget();
-        return false;
-    }
-    const Stopwatch watch;
-    pairs.adopt(list_.map(), list_.size());
-    counts.download_ms += watch.ms();
-    return true;
+    editing_ = false;
+    if (!done) forget();
+    return done;
 }
 
 // Each body once, ascending.
@@ -166,8 +165,18 @@ bool Incremental::step(BoxInput& boxes, const Changes& changes, const FilterInpu
     counts.invalid_boxes = any_invalid_;
     counts.boxes_inside += changes.bodies.size() - std::min(changes.bodies.size(), leavers_.size());
     list_.make_room(added_.size(), removed_.size());
+    editing_ = true;
     list_.edit(added_, removed_);
     return true;
+}
+
+std::vector<Pair> Incremental::last_list() {
+    std::vector<Pair> now = list_.copy();
+    if (!editing_) return now;
+    std::vector<Pair> rest, last;
+    std::set_difference(now.begin(), now.end(), added_.begin(), added_.end(), std::back_inserter(rest));
+    std::set_union(rest.begin(), rest.end(), removed_.begin(), removed_.end(), std::back_inserter(last));
+    return last;
 }
 
 // Bodies whose filters are others than in the last step, and what they are now.
@@ -238,7 +247,7 @@ void Incremental::apply(BoxInput& boxes, const Changes& changes) {
 // Looks for the bodies that have left, and tests all live pairs.
 bool Incremental::search(BoxInput& boxes, const Changes& changes, const FilterInput& filters, FindCounts& counts) {
     SearchKernels& kernels = search_kernels_[filters.any() ? 1 : 0];
-    if (!kernels.movers) {
+    if (!kernels.movers) {  // made last
         kernels.grid = device_.kernel(module, "inc_query", PairSink::defines(filters));
         kernels.movers = device_.kernel(module, "inc_query_movers", PairSink::defines(filters));
     }

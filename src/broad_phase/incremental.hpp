@@ -48,9 +48,10 @@ public:
     /// What the last update() changed in the list; ascending.
     View<const Pair> added() const noexcept { return added_; }
     View<const Pair> removed() const noexcept { return removed_; }
-    /// The list of the last build() or update() that succeeded, for as long as the next one has not, even if that
-    /// failed; unmapped before.
+    /// The list after a build() or update() that succeeded; to be unmapped before the next.
     Mapping map_list() { return list_.map(); }
+    /// The list of the last build() or update() that succeeded, also after an update() that failed. Waits.
+    std::vector<Pair> last_list();
     std::uint32_t list_size() const noexcept { return list_.size(); }
 
 private:
@@ -142,6 +143,7 @@ private:
     std::uint64_t filter_version_ = 0;          // of filter_rows_, for the device's copy
     std::uint32_t bodies_ = 0, frame_ = 0, firsts_ = 0, mover_room_ = 0, nodes_used_ = 0, chains_ = 0, run_ = 1;
     bool any_invalid_ = false;
+    bool editing_ = false;  // the list may have some of added_ and lack some of removed_, in a step that is not done
 };
 
 }  // namespace clinch::detail

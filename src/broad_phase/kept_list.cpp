@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace clinch::detail {
 namespace {
@@ -13,12 +14,13 @@ constexpr std::uint32_t halos_a_block = 32;
 }  // namespace
 
 void KeptList::begin(View<const Pair> pairs, std::uint32_t bodies, bool sorted) {
-    if (!edit_) {
+    if (!edit_) {  // made last
         locate_ = device_.kernel("broad_phase/kept_list", "list_locate");
         save_ = device_.kernel("broad_phase/kept_list", "list_save");
         edit_ = device_.kernel("broad_phase/kept_list", "list_edit");
     }
     size_ = 0;
+    std::vector<Pair>().swap(on_host_);
     device_.reserve(pairs_, (pairs.size() + pairs.size() / 16 + most_halo) * sizeof(Pair), "pairs");
     device_.write(pairs_, pairs.data(), pairs.size() * sizeof(Pair));
     size_ = static_cast<std::uint32_t>(pairs.size());
@@ -30,11 +32,20 @@ void KeptList::reserve_pairs(std::size_t pairs) {
     if (pairs_.bytes() >= pairs * sizeof(Pair)) return;
     std::vector<Pair> kept(size_);
     device_.read(pairs_, kept.data(), kept.size() * sizeof(Pair));
-    const std::uint32_t size = size_;
-    size_ = 0;
-    device_.reserve(pairs_, (pairs + pairs / 16) * sizeof(Pair), "pairs");
-    device_.write(pairs_, kept.data(), kept.size() * sizeof(Pair));
-    size_ = size;
+    try {
+        device_.reserve(pairs_, (pairs + pairs / 16) * sizeof(Pair), "pairs");
+        device_.write(pairs_, kept.data(), kept.size() * sizeof(Pair));
+    } catch (...) {
+        on_host_ = std::move(kept);
+        throw;
+    }
+}
+
+std::vector<Pair> KeptList::copy() {
+    if (!on_host_.empty()) return on_host_;
+    std::vector<Pair> pairs(size_);
+    device_.read(pairs_, pairs.data(), pairs.size() * sizeof(Pair));
+    return pairs;
 }
 
 void KeptList::make_room(std::size_t added, std::size_t removed) {
@@ -87,16 +98,14 @@ void KeptList::edit(View<const Pair> added, View<const Pair> removed) {
 
 void KeptList::run(View<const Edit> edits, std::int32_t shift_at_end, std::uint32_t most_shift) {
     const Shape s = shape_for(most_shift);
-    const std::uint32_t size = size_;
-    size_ = 0;  // until all is done
     const auto count = static_cast<std::uint32_t>(edits.size());
     device_.write(edits_, edits.data(), edits.size() * sizeof(Edit));
-    device_.launch_items(locate_.args(pairs_, size, edits_, count, at_), count);
+    device_.launch_items(locate_.args(pairs_, size_, edits_, count, at_), count);
     const std::size_t group = device_.group_size(), groups = (s.blocks + group - 1) / group;
-    device_.launch(save_.args(pairs_, size, s.block, s.halo, s.blocks, saved_), groups, group);
-    edit_.args(pairs_, size, s.block, s.halo, s.blocks, edits_, at_, count, shift_at_end, saved_);
-    device_.launch(edit_, groups, group);
-    size_ = static_cast<std::uint32_t>(static_cast<std::int64_t>(size) + shift_at_end);
+    device_.launch(save_.args(pairs_, size_, s.block, s.halo, s.blocks, saved_), groups, group);
+    edit_.args(pairs_, size_, s.block, s.halo, s.blocks, edits_, at_, count, shift_at_end, saved_);
+    device_.launch(edit_, groups, group);  // nothing before this has changed the list
+    size_ = static_cast<std::uint32_t>(static_cast<std::int64_t>(size_) + shift_at_end);
 }
 
 }  // namespace clinch::detail

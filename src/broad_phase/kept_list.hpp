@@ -21,14 +21,17 @@ public:
     /// Begins with these pairs of numbers below `bodies`, fewer than 2^32, ascending if `sorted`; else they are
     /// sorted here.
     void begin(View<const Pair> pairs, std::uint32_t bodies, bool sorted);
-    /// Room for edits of this size, and for a list that grows so, so that edit() allocates nothing. May throw; the list
-    /// then is as it was, unless even what it held before does not fit any more: then it is empty.
+    /// Room for edits of this size, and for a list that grows so, so that edit() allocates nothing. May throw; then
+    /// copy() still gives the list, and begin() is to be next.
     void make_room(std::size_t added, std::size_t removed);
     /// Adds pairs that are not in the list and takes pairs that are, both ascending; after make_room() for them. Cost:
-    /// a read and a write of the pairs behind the first edit.
+    /// a read and a write of the pairs behind the first edit. May throw; then copy() gives the list after some of the
+    /// edits, and begin() is to be next.
     void edit(View<const Pair> added, View<const Pair> removed);
 
     std::uint32_t size() const noexcept { return size_; }
+    /// The pairs in host memory. Waits.
+    std::vector<Pair> copy();
     /// The pairs; for 0 of them nothing. Ends before the next edit().
     Mapping map() { return device_.map(pairs_, std::size_t{size_} * sizeof(Pair)); }
 
@@ -48,6 +51,7 @@ private:
     Device& device_;
     Kernel locate_, save_, edit_;
     Buffer pairs_, edits_, at_, saved_;
+    std::vector<Pair> on_host_;  // the pairs, when there was no room for more of them
     std::uint32_t size_ = 0;
 };
 

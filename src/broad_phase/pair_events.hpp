@@ -1,6 +1,7 @@
 // What came and what went between two lists of pairs.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "clinch/aabb.hpp"
@@ -23,9 +24,9 @@ public:
     }
     /// Whether the last list is not known here.
     bool behind() const noexcept { return behind_; }
-    /// Tells the last list. Cost: a copy of it.
-    void hold(View<const Pair> last) {
-        last_.assign(last.begin(), last.end());
+    /// Tells the last list.
+    void hold(std::vector<Pair> last) noexcept {
+        last_ = std::move(last);
         behind_ = false;
     }
     /// The list is the last one again.

@@ -185,13 +185,16 @@ void PairSink::collect(const std::vector<SinkLaunch>& launches, const FilterInpu
     const std::uint64_t all_workers = workers_of(parts);
     // A stream needs no more room than a piece of it.
     const std::uint64_t most = pairs.counts_only() ? 0 : std::min<std::uint64_t>(most_pairs(), pairs.piece());
-    plan(std::max<std::uint64_t>(expected_ + expected_ / 8, bodies), all_workers, most);
+    // A call that fails, perhaps for want of the room that the last one took, leaves no guess.
+    const std::uint64_t expected = std::exchange(expected_, 0);
+    plan(std::max<std::uint64_t>(expected + expected / 8, bodies), all_workers, most);
     Outcome outcome = run(parts, filters, bodies);
-    expected_ = outcome.pairs;
     check_limit(outcome.pairs, options_);
+    const std::uint64_t found = outcome.pairs;
     if (pairs.counts_only()) {
         add(outcome, counts);
         pairs.add_count(outcome.pairs);
+        expected_ = found;
         return;
     }
     if (!outcome.fits) {
@@ -204,11 +207,12 @@ void PairSink::collect(const std::vector<SinkLaunch>& launches, const FilterInpu
         const Collection to{filters, bodies, pairs, counts, ends, most};
         for (const Part& part : parts) collect_pieces(part, outcome.pairs, to);
         if (options_.order == Order::Sorted) pairs.merge_runs(ends);
+        expected_ = found;
         return;
     }
     add(outcome, counts);
-    if (outcome.pairs == 0) return;
-    deliver(outcome, bodies, true, pairs, counts);
+    if (outcome.pairs > 0) deliver(outcome, bodies, true, pairs, counts);
+    expected_ = found;
 }
 
 // The tasks of a part in pieces whose pairs fit, if there are `expected` pairs in it.

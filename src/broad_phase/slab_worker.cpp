@@ -1,5 +1,7 @@
 #include "src/broad_phase/slab_worker.hpp"
 
+#include <utility>
+
 #include "src/device/stopwatch.hpp"
 
 namespace clinch::detail {
@@ -36,9 +38,10 @@ void SlabWorker::assign(std::size_t device) {
 const Buffer& SlabWorker::send(Device& device, View<const Aabb> boxes, const std::vector<std::uint32_t>& members) {
     const std::size_t bytes = members.size() * sizeof(Aabb);
     device.reserve(staging_, bytes, "boxes");
-    const Mapping mapping = device.map_to_write(staging_, bytes);
+    Mapping mapping = device.map_to_write(staging_, bytes);
     Aabb* const rows = mapping.to<Aabb>();
     for (std::size_t i = 0; i < members.size(); ++i) rows[i] = boxes[members[i]];
+    device.written(std::move(mapping));
     return staging_;
 }
 

@@ -173,11 +173,9 @@ std::vector<std::size_t> BroadSplit::reassign(const std::vector<std::size_t>& wh
         again.push_back(which[i]);
         const std::size_t device = workers_[which[i]]->device();
         if (!context_.in_use(device)) continue;
-        const std::string why = message_of(thrown[i]);
-        if (!context_.retire(device, why)) std::rethrow_exception(thrown[i]);
+        if (!context_.retire(device, message_of(thrown[i]))) std::rethrow_exception(thrown[i]);
         shares_.retire(device);
-        warnings_.push_back("device " + std::to_string(device) + " ('" + context_.infos[device].name +
-                            "') failed and is not used any more: " + why);
+        warnings_.push_back(context_.why_retired(device));
     }
     const std::vector<std::size_t> left = context_.crew();
     for (std::size_t i = 0; i < again.size(); ++i) workers_[again[i]]->assign(left[i % left.size()]);

@@ -118,10 +118,10 @@ void Sweep::find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, F
     }
     if (n > std::numeric_limits<std::uint32_t>::max() - padding)
         throw Error(ErrorCode::OutOfMemory, std::to_string(n) + " boxes are more than sweep can hold as columns");
-    if (!keys_kernel_) {
-        keys_kernel_ = device_.kernel("broad_phase/sweep", "sweep_keys");
+    if (!keys_kernel_) {  // made last
         gather_kernel_ = device_.kernel("broad_phase/sweep", "sweep_gather");
         ranges_kernel_ = device_.kernel("broad_phase/sweep", "sweep_ranges");
+        keys_kernel_ = device_.kernel("broad_phase/sweep", "sweep_keys");
     }
     const AxisChoice choice = axis_.choose(boxes);
     counts.invalid_boxes = choice.boxes < n;

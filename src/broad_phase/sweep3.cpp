@@ -84,7 +84,7 @@ private:
 };
 
 void Sweep3::load_kernels() {
-    if (bounds_kernel_) return;
+    if (bounds_kernel_) return;  // made last
     const std::string module = "broad_phase/sweep3";
     starts_kernel_ = device_.kernel(module, "sweep3_starts");
     ranks_kernel_ = device_.kernel(module, "sweep3_ranks");

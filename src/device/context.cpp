@@ -12,7 +12,11 @@
 namespace clinch {
 
 detail::Device& Context::Impl::open(std::size_t i) {
-    if (devices[i] == nullptr) devices[i] = std::make_unique<detail::Device>(infos[i], ids[i], options);
+    if (devices[i] == nullptr) {
+        detail::FaultHook hook;
+        if (fault_hook) hook = [ask = fault_hook, i](const char* call) { return ask(i, call); };
+        devices[i] = std::make_unique<detail::Device>(infos[i], ids[i], options, std::move(hook));
+    }
     return *devices[i];
 }
 
@@ -30,12 +34,16 @@ std::size_t Context::Impl::primary() const {
 }
 
 bool Context::Impl::retire(std::size_t i, const std::string& why) {
-    if (!in_use(i)) return true;
-    if (crew().size() < 2) return false;
+    if (i < infos.size() && !in_use(i)) return true;
+    if (infos.empty() || crew().size() < 2) return false;
     retired.resize(infos.size());
     retired[i] = why.empty() ? "it failed" : why;
-    if (options.log) options.log("device '" + infos[i].name + "' is not used any more: " + retired[i]);
+    if (options.log) options.log(why_retired(i));
     return true;
+}
+
+std::string Context::Impl::why_retired(std::size_t i) const {
+    return "device " + std::to_string(i) + " ('" + infos[i].name + "') failed and is not used any more: " + retired[i];
 }
 
 std::vector<std::size_t> Context::Impl::crew() const {

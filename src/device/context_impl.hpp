@@ -1,6 +1,7 @@
 // What stands behind clinch::Context: the chosen devices, opened one by one when first used.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -15,6 +16,9 @@ struct Context::Impl {
     std::vector<cl_device_id> ids;                         // retained: see DeviceList in discovery.hpp
     std::vector<std::shared_ptr<const void>> id_owners;    // keeps sub-devices alive
     std::vector<std::unique_ptr<detail::Device>> devices;  // null until opened
+    /// For tests, to be set before a device is opened: as detail::FaultHook, with the number of the device whose call
+    /// it is. Devices may be worked on by a thread each; the test sees to it that the hook bears that.
+    std::function<cl_int(std::size_t device, const char* call)> fault_hook;
 
     /// A broad phase of fewer boxes than this for each device goes to fewer devices.
     std::uint64_t least_boxes_a_device = 50000;
@@ -27,6 +31,8 @@ struct Context::Impl {
     std::size_t primary() const;
     /// Takes device i out of use, for good, and logs why. False if it is the last: then it stays.
     bool retire(std::size_t i, const std::string& why);
+    /// One line on a device that was retired.
+    std::string why_retired(std::size_t i) const;
     bool in_use(std::size_t i) const noexcept { return i >= retired.size() || retired[i].empty(); }
     /// Those not retired, the primary first, then as in infos.
     std::vector<std::size_t> crew() const;

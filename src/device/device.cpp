@@ -9,6 +9,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "src/device/kernel_sources.hpp"
@@ -45,7 +46,8 @@ Kernel::~Kernel() {
 }
 
 void Kernel::set_raw(cl_uint index, std::size_t size, const void* value) {
-    const cl_int status = clSetKernelArg(kernel_, index, size, value);
+    const auto call = [&] { return clSetKernelArg(kernel_, index, size, value); };
+    const cl_int status = fault_hook_ == nullptr ? call() : attempt(*fault_hook_, "clSetKernelArg", call);
     if (status != CL_SUCCESS)
         throw_opencl("clSetKernelArg of argument " + std::to_string(index) + " of kernel '" + name_ + "'", status);
 }
@@ -64,9 +66,10 @@ struct Device::Impl {
     std::shared_ptr<MemoryAccount> account = std::make_shared<MemoryAccount>();
     DeviceReport report;
     std::deque<std::vector<std::byte>> in_flight;  // host data of writes that nothing has waited for yet
+    FaultHook fault_hook;
 
-    Impl(const DeviceInfo& i, cl_device_id id, const ContextOptions& o)
-        : info(i), options(o), device(id), cache(cache_folder(o), o.log) {
+    Impl(const DeviceInfo& i, cl_device_id id, const ContextOptions& o, FaultHook hook)
+        : info(i), options(o), device(id), cache(cache_folder(o), o.log), fault_hook(std::move(hook)) {
         report.info = i;
         report.opened = true;
         for (const std::string& quirk : i.quirks)
@@ -78,9 +81,23 @@ struct Device::Impl {
         return o.kernel_cache.empty() ? default_cache_folder() : o.kernel_cache;
     }
 
+    // Asks the hook before a call that the wrapper makes, and fails as the wrapper does.
+    void ask(const char* call) const {
+        const cl_int status = asked(fault_hook, call);
+        if (status != CL_SUCCESS) throw compute::opencl_error(status);
+    }
+    // Makes a call, which is named in the error if it fails.
+    template <class Call>
+    void make(const char* name, const Call& call) const {
+        check(attempt(fault_hook, name, call), name);
+    }
+
     const compute::program& program(const std::string& module, const std::string& defines);
     compute::program build(const std::string& module, const std::string& source, const std::string& build_options);
+    cl_int build(const compute::program& program, const std::string& build_options) const;
+    std::string build_log(const compute::program& program) const;
     std::optional<compute::program> load(const std::string& key, const std::string& build_options);
+    void keep(const std::string& module, const std::string& key, const compute::program& program) const;
 };
 
 namespace {
@@ -96,15 +113,33 @@ std::string cache_key(const DeviceInfo& info, const std::string& build_options, 
 
 }  // namespace
 
+// By the plain call: the wrapper prints the compiler's output in debug builds.
+cl_int Device::Impl::build(const compute::program& program, const std::string& build_options) const {
+    const cl_device_id id = device.id();
+    return attempt(fault_hook, "clBuildProgram",
+                   [&] { return clBuildProgram(program.get(), 1, &id, build_options.c_str(), nullptr, nullptr); });
+}
+
+// Empty where the driver does not give it: what failed is the build.
+std::string Device::Impl::build_log(const compute::program& program) const {
+    try {
+        ask("clGetProgramBuildInfo");
+        return program.get_build_info<std::string>(CL_PROGRAM_BUILD_LOG, device);
+    } catch (const compute::opencl_error&) {
+        return {};
+    }
+}
+
 compute::program Device::Impl::build(const std::string& module, const std::string& source,
                                      const std::string& build_options) {
-    return checked("building kernel module '" + module + "' for '" + info.name + "'", [&] {
+    const std::string purpose = "building kernel module '" + module + "' for '" + info.name + "'";
+    return checked(purpose, [&] {
+        ask("clCreateProgramWithSource");
         auto built = compute::program::create_with_source(source, context);
-        // Built by the plain call: the wrapper prints the compiler's output in debug builds.
-        const cl_device_id id = device.id();
-        const cl_int status = clBuildProgram(built.get(), 1, &id, build_options.c_str(), nullptr, nullptr);
+        const cl_int status = build(built, build_options);
+        if (is_shortage(status)) throw_opencl(purpose, status);
         if (status != CL_SUCCESS) {
-            const std::string log = built.get_build_info<std::string>(CL_PROGRAM_BUILD_LOG, device);
+            const std::string log = build_log(built);
             throw Error(ErrorCode::BuildFailed,
                         "kernel module '" + module + "' does not compile for '" + info.name + "' (" + info.platform +
                             "); the compiler says: " + log.substr(0, log.find('\n')),
@@ -117,17 +152,29 @@ compute::program Device::Impl::build(const std::string& module, const std::strin
 std::optional<compute::program> Device::Impl::load(const std::string& key, const std::string& build_options) {
     const auto binary = cache.load(key);
     if (!binary) return {};
+    cl_int status = CL_SUCCESS;
     try {
+        ask("clCreateProgramWithBinary");
         auto loaded = compute::program::create_with_binary(*binary, context);
-        const cl_device_id id = device.id();
-        check(clBuildProgram(loaded.get(), 1, &id, build_options.c_str(), nullptr, nullptr), "clBuildProgram");
-        return loaded;
+        status = build(loaded, build_options);
+        if (status == CL_SUCCESS) return loaded;
     } catch (const compute::opencl_error& error) {
-        cache.discard(key, std::string("the driver refused it: ") + error.what());
-    } catch (const Error& error) {
-        cache.discard(key, std::string("the driver refused it: ") + error.what());
+        status = error.error_code();
     }
+    // Where something was short, nothing is said of the entry.
+    if (!is_shortage(status)) cache.discard(key, "the driver refused it: " + compute::opencl_error::to_string(status));
     return {};
+}
+
+// Puts a program into the cache. It works as well without.
+void Device::Impl::keep(const std::string& module, const std::string& key, const compute::program& program) const {
+    try {
+        ask("clGetProgramInfo");
+        cache.store(key, program.binary());
+    } catch (const compute::opencl_error& error) {
+        if (options.log)
+            options.log("cannot keep kernel module '" + module + "': reading its binary failed: " + error.what());
+    }
 }
 
 const compute::program& Device::Impl::program(const std::string& module, const std::string& defines) {
@@ -146,24 +193,25 @@ const compute::program& Device::Impl::program(const std::string& module, const s
     } else {
         program = build(module, source, build_options);
         report.modules_built.push_back(module);
-        cache.store(key,
-                    checked("reading the binary of kernel module '" + module + "'", [&] { return program->binary(); }));
+        keep(module, key, *program);
     }
     report.build_ms += watch.ms();
     return programs.emplace(module + ' ' + build_options, *program).first->second;
 }
 
-Device::Device(const DeviceInfo& info, cl_device_id id, const ContextOptions& options)
-    : impl_(std::make_unique<Impl>(info, id, options)) {
+Device::Device(const DeviceInfo& info, cl_device_id id, const ContextOptions& options, FaultHook fault_hook)
+    : impl_(std::make_unique<Impl>(info, id, options, std::move(fault_hook))) {
     checked("opening device '" + info.name + "'", [&] {
+        impl_->ask("clCreateContext");
         impl_->context = compute::context(impl_->device);
+        impl_->ask("clCreateCommandQueue");
         impl_->queue = compute::command_queue(impl_->context, impl_->device);
     });
 }
 
 Device::Device(const DeviceInfo& info, cl_device_id id, cl_context context, cl_command_queue queue,
                const ContextOptions& options)
-    : impl_(std::make_unique<Impl>(info, id, options)) {
+    : impl_(std::make_unique<Impl>(info, id, options, FaultHook())) {
     impl_->context = compute::context(context);
     impl_->queue = compute::command_queue(queue);
 }
@@ -196,6 +244,7 @@ Buffer Device::allocate(std::size_t bytes, const char* what) {
     const cl_mem_flags place = impl_->info.unified_memory ? CL_MEM_ALLOC_HOST_PTR : 0;
     Buffer buffer;
     buffer.memory_ = checked(purpose, [&] {
+        impl_->ask("clCreateBuffer");
         const compute::buffer memory(impl_->context, bytes, CL_MEM_READ_WRITE | place);
         clRetainMemObject(memory.get());
         return memory.get();
@@ -220,8 +269,9 @@ void Device::write(const Buffer& buffer, const void* data, std::size_t bytes, st
         write_later(buffer, {first, first + bytes}, offset);
         return;
     }
-    check(clEnqueueWriteBuffer(queue(), buffer.handle(), CL_TRUE, offset, bytes, data, 0, nullptr, nullptr),
-          "clEnqueueWriteBuffer");
+    impl_->make("clEnqueueWriteBuffer", [&] {
+        return clEnqueueWriteBuffer(queue(), buffer.handle(), CL_TRUE, offset, bytes, data, 0, nullptr, nullptr);
+    });
 }
 
 // The queue reads the data some time before the next command that is waited for is done.
@@ -229,15 +279,17 @@ void Device::write_later(const Buffer& buffer, std::vector<std::byte> data, std:
     if (impl_->in_flight.size() >= most_in_flight) finish();
     impl_->in_flight.push_back(std::move(data));
     const std::vector<std::byte>& kept = impl_->in_flight.back();
-    check(
-        clEnqueueWriteBuffer(queue(), buffer.handle(), CL_FALSE, offset, kept.size(), kept.data(), 0, nullptr, nullptr),
-        "clEnqueueWriteBuffer");
+    impl_->make("clEnqueueWriteBuffer", [&] {
+        return clEnqueueWriteBuffer(queue(), buffer.handle(), CL_FALSE, offset, kept.size(), kept.data(), 0, nullptr,
+                                    nullptr);
+    });
 }
 
 void Device::read(cl_mem memory, void* data, std::size_t bytes, std::size_t offset) {
     if (bytes == 0) return;
-    check(clEnqueueReadBuffer(queue(), memory, CL_TRUE, offset, bytes, data, 0, nullptr, nullptr),
-          "clEnqueueReadBuffer");
+    impl_->make("clEnqueueReadBuffer", [&] {
+        return clEnqueueReadBuffer(queue(), memory, CL_TRUE, offset, bytes, data, 0, nullptr, nullptr);
+    });
     impl_->in_flight.clear();
 }
 
@@ -252,17 +304,20 @@ void Device::clear(const Buffer& buffer, std::size_t bytes) {
         return;
     }
     const cl_uint zero = 0;
-    check(clEnqueueFillBuffer(queue(), buffer.handle(), &zero, sizeof zero, 0, bytes, 0, nullptr, nullptr),
-          "clEnqueueFillBuffer");
+    impl_->make("clEnqueueFillBuffer", [&] {
+        return clEnqueueFillBuffer(queue(), buffer.handle(), &zero, sizeof zero, 0, bytes, 0, nullptr, nullptr);
+    });
 }
 
 Mapping Device::map_for(cl_map_flags flags, const Buffer& buffer, std::size_t bytes) {
     Mapping mapping;
     if (bytes == 0) return mapping;
-    cl_int status = CL_SUCCESS;
-    void* pointer =
-        clEnqueueMapBuffer(queue(), buffer.handle(), CL_TRUE, flags, 0, bytes, 0, nullptr, nullptr, &status);
-    check(status, "clEnqueueMapBuffer");
+    void* pointer = nullptr;
+    impl_->make("clEnqueueMapBuffer", [&] {
+        cl_int status = CL_SUCCESS;
+        pointer = clEnqueueMapBuffer(queue(), buffer.handle(), CL_TRUE, flags, 0, bytes, 0, nullptr, nullptr, &status);
+        return status;
+    });
     impl_->in_flight.clear();
     mapping.device_ = this;
     mapping.memory_ = buffer.handle();
@@ -278,15 +333,39 @@ Mapping Device::map_to_write(const Buffer& buffer, std::size_t bytes) {
     return map_for(CL_MAP_WRITE_INVALIDATE_REGION, buffer, bytes);
 }
 
+void Device::written(Mapping mapping) {
+    if (mapping.pointer_ == nullptr) return;
+    impl_->make("clEnqueueUnmapMemObject", [&] {
+        return clEnqueueUnmapMemObject(queue(), mapping.memory_, std::exchange(mapping.pointer_, nullptr), 0, nullptr,
+                                       nullptr);
+    });
+}
+
+std::size_t Device::bytes_of(cl_mem memory, const char* what) const {
+    std::size_t bytes = 0;
+    cl_context of = nullptr;
+    impl_->make("clGetMemObjectInfo",
+                [&] { return clGetMemObjectInfo(memory, CL_MEM_SIZE, sizeof bytes, &bytes, nullptr); });
+    impl_->make("clGetMemObjectInfo",
+                [&] { return clGetMemObjectInfo(memory, CL_MEM_CONTEXT, sizeof of, &of, nullptr); });
+    if (of != context())
+        throw Error(ErrorCode::InvalidArgument, std::string("the buffer of ") + what +
+                                                    " belongs to another OpenCL context than the device '" +
+                                                    impl_->info.name + "'");
+    return bytes;
+}
+
 Kernel Device::kernel(const std::string& module, const std::string& name, const std::string& defines) {
     const compute::program& program = impl_->program(module, defines);
     Kernel kernel;
     kernel.kernel_ = checked("creating kernel '" + name + "' of module '" + module + "'", [&] {
+        impl_->ask("clCreateKernel");
         const compute::kernel created(program, name);
         clRetainKernel(created.get());
         return created.get();
     });
     kernel.name_ = name;
+    if (impl_->fault_hook) kernel.fault_hook_ = &impl_->fault_hook;
     return kernel;
 }
 
@@ -297,8 +376,9 @@ void Device::add_module(const std::string& module, const std::string& source) {
 void Device::launch(const Kernel& kernel, std::size_t groups, std::size_t group_size) {
     if (groups == 0) return;
     const std::size_t items = groups * group_size;
-    const cl_int status =
-        clEnqueueNDRangeKernel(queue(), kernel.handle(), 1, nullptr, &items, &group_size, 0, nullptr, nullptr);
+    const cl_int status = attempt(impl_->fault_hook, "clEnqueueNDRangeKernel", [&] {
+        return clEnqueueNDRangeKernel(queue(), kernel.handle(), 1, nullptr, &items, &group_size, 0, nullptr, nullptr);
+    });
     if (status != CL_SUCCESS)
         throw_opencl("launching kernel '" + kernel.name() + "' with " + std::to_string(items) +
                          " work-items in groups of " + std::to_string(group_size) + " on '" + impl_->info.name + "'",
@@ -310,7 +390,7 @@ void Device::launch_items(const Kernel& kernel, std::size_t items) {
 }
 
 void Device::finish() {
-    check(clFinish(queue()), "clFinish");
+    impl_->make("clFinish", [&] { return clFinish(queue()); });
     impl_->in_flight.clear();
 }
 

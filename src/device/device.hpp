@@ -19,6 +19,7 @@
 #include "clinch/context.hpp"
 #include "clinch/device.hpp"
 #include "clinch/error.hpp"
+#include "src/device/fault_hook.hpp"
 
 namespace clinch::detail {
 
@@ -94,6 +95,7 @@ private:
     void swap(Kernel& other) noexcept {
         std::swap(kernel_, other.kernel_);
         std::swap(name_, other.name_);
+        std::swap(fault_hook_, other.fault_hook_);
     }
     void set_raw(cl_uint index, std::size_t size, const void* value);
     void set(cl_uint index, const Buffer& buffer) { set(index, buffer.handle()); }
@@ -106,6 +108,7 @@ private:
     }
     cl_kernel kernel_ = nullptr;
     std::string name_;
+    const FaultHook* fault_hook_ = nullptr;  // the device's
 };
 
 /// Device memory made readable, or writable, on the host: mapped where they share memory, else copied by the
@@ -145,8 +148,8 @@ private:
 /// An opened device. Commands run in order; only the functions that say so wait.
 class Device {
 public:
-    /// Opens `info`'s device `id` in a context and queue of its own, or in the caller's.
-    Device(const DeviceInfo& info, cl_device_id id, const ContextOptions& options);
+    /// Opens `info`'s device `id` in a context and queue of its own, or in the caller's. `fault_hook` is for tests.
+    Device(const DeviceInfo& info, cl_device_id id, const ContextOptions& options, FaultHook fault_hook = {});
     Device(const DeviceInfo& info, cl_device_id id, cl_context context, cl_command_queue queue,
            const ContextOptions& options);
     ~Device();
@@ -175,6 +178,11 @@ public:
     Mapping map(const Buffer& buffer, std::size_t bytes);
     /// Host memory for the first `bytes`, of which all must be written before the mapping ends.
     Mapping map_to_write(const Buffer& buffer, std::size_t bytes);
+    /// Ends such a mapping: what was written is the buffer's from here on.
+    void written(Mapping mapping);
+    /// Size of memory that is not the library's own. It must be of this device's context, else InvalidArgument, whose
+    /// message says `what` it is.
+    std::size_t bytes_of(cl_mem memory, const char* what) const;
 
     /// The kernel `name` of the module `module` ("broad_phase/brute" is cl/broad_phase/brute.cl),
     /// built for this device on first use with `defines` ("-DNAME=1 ...") on top of LANES.

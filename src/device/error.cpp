@@ -31,11 +31,14 @@ Error::Error(ErrorCode code, const std::string& message, int opencl_status, std:
 
 namespace detail {
 
+bool is_shortage(cl_int status) noexcept {
+    return status == CL_MEM_OBJECT_ALLOCATION_FAILURE || status == CL_OUT_OF_RESOURCES ||
+           status == CL_OUT_OF_HOST_MEMORY || status == CL_INVALID_BUFFER_SIZE;
+}
+
 void throw_opencl(const std::string& what, cl_int status) {
-    const bool memory = status == CL_MEM_OBJECT_ALLOCATION_FAILURE || status == CL_OUT_OF_RESOURCES ||
-                        status == CL_OUT_OF_HOST_MEMORY || status == CL_INVALID_BUFFER_SIZE;
     throw Error(
-        memory ? ErrorCode::OutOfMemory : ErrorCode::DeviceFailed,
+        is_shortage(status) ? ErrorCode::OutOfMemory : ErrorCode::DeviceFailed,
         what + " failed: " + boost::compute::opencl_error::to_string(status) + " (" + std::to_string(status) + ")",
         status);
 }

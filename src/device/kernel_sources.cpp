@@ -3,7 +3,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -15,11 +14,12 @@ namespace {
 
 std::string read_from_folder(const std::filesystem::path& folder, const std::string& path) {
     std::ifstream file(folder / path, std::ios::binary);
-    std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (!file)
+    std::ostringstream text;
+    for (char c = 0; file.get(c);) text.put(c);  // not by stream buffer, which throws what is no Error
+    if (!file.eof() || file.bad())
         throw Error(ErrorCode::FileFailed,
                     "cannot read the kernel file '" + (folder / path).string() + "' (CLINCH_KERNEL_DIR is set)");
-    return text;
+    return text.str();
 }
 
 std::string read_kernel_file(const std::string& path) {

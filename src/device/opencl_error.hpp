@@ -11,6 +11,9 @@
 
 namespace clinch::detail {
 
+/// Whether the status says that memory, or what else a call needs, was short.
+bool is_shortage(cl_int status) noexcept;
+
 /// Throws Error for a failed OpenCL call: "<what> failed: <name of status> (<number>)".
 [[noreturn]] void throw_opencl(const std::string& what, cl_int status);
 

@@ -8,7 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
+#include <istream>
 #include <random>
 #include <string_view>
 #include <utility>
@@ -46,6 +46,15 @@ std::string body_of(const std::string& key, const std::vector<unsigned char>& bi
     return body;
 }
 
+// The whole of a file; empty where it cannot be read. Reading by stream buffer would throw then.
+std::string content_of(std::istream& file) {
+    std::string content;
+    std::array<char, 1 << 16> block{};
+    while (file.read(block.data(), block.size()) || file.gcount() > 0)
+        content.append(block.data(), static_cast<std::size_t>(file.gcount()));
+    return file.bad() ? std::string() : content;
+}
+
 // Takes an entry apart; empty if anything about it is wrong.
 std::optional<std::vector<unsigned char>> parse(const std::string& entry, const std::string& key) {
     if (entry.size() < header_length + sizeof(std::uint64_t) || entry.compare(0, magic.size(), magic) != 0) return {};
@@ -75,8 +84,7 @@ std::optional<std::vector<unsigned char>> ProgramCache::load(const std::string& 
     if (folder_.empty()) return {};
     std::ifstream file(path(key), std::ios::binary);
     if (!file) return {};
-    const std::string entry{std::istreambuf_iterator<char>(file), {}};
-    auto binary = parse(entry, key);
+    auto binary = parse(content_of(file), key);
     if (!binary) discard(key, "it is damaged");
     return binary;
 }

@@ -124,10 +124,11 @@ void Manifolds::find(const NarrowScene& scene, const Slots& slots, const Contact
                      unsigned bits, std::uint32_t wanted, DevicePoints& out) {
     const auto boxes = static_cast<std::uint32_t>(kinds.boxes.size()),
                others = static_cast<std::uint32_t>(kinds.others.size());
-    stride_ = std::max(stride_, column_stride(boxes + others));
-    device_.reserve(points_, stride_ * wanted * point_columns * (bits / 8), "the points of manifolds");
-    device_.reserve(features_, stride_ * wanted * sizeof(std::uint32_t), "the features of manifolds");
-    device_.reserve(counts_, stride_ * sizeof(std::uint32_t), "the counts of manifolds' points");
+    const std::uint64_t stride = std::max(stride_, column_stride(boxes + others));
+    device_.reserve(points_, stride * wanted * point_columns * (bits / 8), "the points of manifolds");
+    device_.reserve(features_, stride * wanted * sizeof(std::uint32_t), "the features of manifolds");
+    device_.reserve(counts_, stride * sizeof(std::uint32_t), "the counts of manifolds' points");
+    stride_ = stride;  // not sooner: a call that found no room is not to make the next ask for it
     // What nobody reads may be any buffer.
     const Buffer& margins = scene.has_margins() ? scene.margins() : scene.classes();
     const bool faces = scene.faces(bits).handle() != nullptr;

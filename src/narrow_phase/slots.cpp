@@ -31,12 +31,12 @@ void Slots::group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_
     n_ = static_cast<std::uint32_t>(pairs.size());
     with_rests_ = with_rests;
     float64_ = false;
-    if (!keys_kernel_) {
-        keys_kernel_ = device_.kernel(module, "bucket_keys");
+    if (!keys_kernel_) {  // made last
         slots_kernel_ = device_.kernel(module, "bucket_slots");
         table_ = device_.allocate(bucket_table().size(), "the table of buckets");
         device_.write(table_, bucket_table().data(), bucket_table().size());
         undecided_ = device_.allocate(most_buckets * sizeof(std::uint32_t), "the counts of undecided pairs");
+        keys_kernel_ = device_.kernel(module, "bucket_keys");
     }
     device_.clear(undecided_, most_buckets * sizeof(std::uint32_t));
     const std::uint32_t items = runs_for(n_), per_item = (n_ - 1) / items + 1;
@@ -80,9 +80,10 @@ void Slots::number_slots(const std::vector<std::uint64_t>& counts) {
     }
     // Room for every pair a second time: it may be undecided.
     const std::size_t slots = with_rests_ ? std::size_t{2} * slots_used_ + matrix().size() * block : slots_used_;
-    stride_ = std::max(stride_, column_stride(slots));
-    device_.reserve(answers_, stride_ * (answer_columns + (with_rests_ ? rest_columns : 0)) * sizeof(float), "answers");
-    device_.reserve(hits_, stride_ * sizeof(std::uint32_t), "the hits among pairs");
+    const std::uint64_t stride = std::max(stride_, column_stride(slots));
+    device_.reserve(answers_, stride * (answer_columns + (with_rests_ ? rest_columns : 0)) * sizeof(float), "answers");
+    device_.reserve(hits_, stride * sizeof(std::uint32_t), "the hits among pairs");
+    stride_ = stride;  // not sooner: a call that found no room is not to make the next ask for it
     device_.reserve(slot_of_, n_ * sizeof(std::uint32_t), "the slots of pairs");
     device_.reserve(numbers_, n_ * sizeof(std::uint32_t), "the numbers of pairs");
     device_.reserve(firsts_, most_buckets * sizeof(std::uint32_t), "the places of buckets");
@@ -113,10 +114,10 @@ std::array<std::uint32_t, 32> Slots::count_undecided() {
 BucketSlice Slots::undecided(std::size_t k, std::uint32_t count) {
     const BucketSlice& bucket = slices_[k];
     number_pairs(bucket.listed);
-    if (!open_count_) {
-        open_count_ = device_.kernel(module, "open_count");
+    if (!open_count_) {  // made last
         open_fill_ = device_.kernel(module, "open_fill");
         open_slots_ = device_.kernel(module, "open_slots");
+        open_count_ = device_.kernel(module, "open_count");
     }
     const std::uint32_t runs = runs_for(bucket.count), per_run = (bucket.count - 1) / runs + 1;
     device_.reserve(run_counts_, runs * sizeof(std::uint32_t), "the counts of runs");
@@ -174,9 +175,9 @@ std::vector<std::uint32_t> Slots::numbers(const BucketSlice& slice) {
 }
 
 std::uint32_t Slots::gather(bool only_pairs) {
-    if (!count_kernel_) {
-        count_kernel_ = device_.kernel(module, "contact_count");
+    if (!count_kernel_) {  // made last
         gather_kernel_ = device_.kernel(module, "contact_gather");
+        count_kernel_ = device_.kernel(module, "contact_count");
     }
     number_pairs(false);
     const std::uint32_t runs = runs_for(n_), per_run = (n_ - 1) / runs + 1;
@@ -187,8 +188,9 @@ std::uint32_t Slots::gather(bool only_pairs) {
     scan_.exclusive(run_counts_, runs, run_offsets_);
     const std::uint32_t count = scan_.total();
     if (count == 0) return 0;
-    contact_stride_ = std::max(contact_stride_, column_stride(count));
-    device_.reserve(contacts_, contact_stride_ * gathered_columns(only_pairs) * sizeof(std::uint32_t), "contacts");
+    const std::uint64_t stride = std::max(contact_stride_, column_stride(count));
+    device_.reserve(contacts_, stride * gathered_columns(only_pairs) * sizeof(std::uint32_t), "contacts");
+    contact_stride_ = stride;
     device_.launch(gather_kernel_.args(pairs_, hits_, slot_of_, n_, per_run, runs, run_offsets_, answers_, stride_,
                                        only_pairs ? 0u : 1u, float64_ ? 1u : 0u, contacts_, contact_stride_),
                    groups, group);

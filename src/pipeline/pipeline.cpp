@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "src/broad_phase/broad_phase_impl.hpp"
 #include "src/broad_phase/planes.hpp"
+#include "src/device/failover.hpp"
 #include "src/device/stopwatch.hpp"
 #include "src/scene/bounds.hpp"
 #include "src/scene/scene_impl.hpp"
@@ -60,6 +62,7 @@ struct StepResult::Impl {
     bool nothing_changed(const Scene& scene) const;
     void step_again();
     void start_afresh();
+    void leave_device(std::vector<std::string>& warnings);
     View<const Pair> find_changed(const detail::AlgorithmRow& row, const detail::FilterInput& filters);
     detail::FilterInput filters(const Scene& scene);
     View<const Pair> find_on_device(const Scene& scene, const detail::AlgorithmRow& row, std::size_t& changed);
@@ -82,6 +85,14 @@ void StepResult::Impl::start_afresh() {
     on_device = false;
     scene_identity.reset();
     stepped_identity.reset();
+}
+
+// The device that all was on has failed.
+void StepResult::Impl::leave_device(std::vector<std::string>& warnings) {
+    start_afresh();
+    planes = detail::PlanePairs();
+    if (!broad.impl().drop_device())
+        warnings.emplace_back("the list of pairs before was lost with the device: all pairs are told as added");
 }
 
 // The filters of a scene, under a number that changes when they may have.
@@ -122,9 +133,7 @@ View<const Pair> StepResult::Impl::find_changed(const detail::AlgorithmRow& row,
         if (sent.empty() && !filters_changed) return impl.same_again();
         if (impl.steps_pay(row, rows, sent.size())) {
             if (impl.step(input, {sent, nullptr, filters_changed}, filters)) return impl.pairs.view();
-            impl.find(row, input, filters, false);
-            impl.begin_steps(input, filters);
-            return impl.pairs.view();
+            return impl.find_to_step(row, input, filters, false);
         }
     }
     return impl.find(row, input, filters, false);
@@ -185,6 +194,8 @@ void StepResult::Impl::step_again() {
     report.skipped = {};
     report.skipped.bounds = rows;
     report.skipped.unchanged = rows;
+    report.broad_split.clear();
+    report.warnings.clear();
     events.same_again();
 }
 
@@ -213,6 +224,8 @@ void StepResult::Impl::step(const Scene& scene) {
     report.skipped.bounds = rows - std::min(rows, changed);
     report.ms.broad = found.ms.broad;
     report.ms.download = found.ms.download;
+    report.broad_split = found.broad_split;
+    report.warnings = found.warnings;
     report.peak_device_bytes = found.peak_device_bytes;
     report.peak_host_bytes = found.peak_host_bytes;
     add_plane_pairs(scene);
@@ -229,8 +242,9 @@ void StepResult::Impl::step(const Scene& scene) {
 View<const Aabb> StepResult::Impl::boxes() {
     if (!on_device) return host_bounds ? host_bounds->boxes() : View<const Aabb>{};
     if (!boxes_read) {
-        boxes_read.emplace(rows);
-        broad.impl().device().read(device_bounds->boxes(), boxes_read->data(), rows * sizeof(Aabb));
+        std::vector<Aabb> read(rows);
+        broad.impl().device().read(device_bounds->boxes(), read.data(), rows * sizeof(Aabb));
+        boxes_read = std::move(read);
     }
     return *boxes_read;
 }
@@ -268,13 +282,17 @@ void Pipeline::drop_warm_start() noexcept {
 }
 
 const StepResult& Pipeline::step(const Scene& scene) {
+    StepResult::Impl& impl = *impl_;
+    std::vector<std::string> warnings;
     try {
-        impl_->step(scene);
+        detail::with_failover(
+            impl.broad.impl().context, warnings, [&] { impl.step(scene); }, [&] { impl.leave_device(warnings); });
     } catch (...) {
-        impl_->start_afresh();
+        impl.start_afresh();
         throw;
     }
-    return impl_->result;
+    impl.report.warnings.insert(impl.report.warnings.begin(), warnings.begin(), warnings.end());
+    return impl.result;
 }
 
 }  // namespace clinch

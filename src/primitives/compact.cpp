@@ -25,7 +25,7 @@ void Compact::numbers(const Buffer& flags, std::uint32_t n, const Buffer& out) {
 }
 
 void Compact::run(const Buffer& flags, const Buffer& values, std::uint32_t n, const Buffer& out, bool number) {
-    if (!count_kernel_) {
+    if (!count_kernel_) {  // made last
         fill_kernel_ = device_.kernel("primitives/compact", "compact_fill");
         count_kernel_ = device_.kernel("primitives/compact", "compact_count");
     }

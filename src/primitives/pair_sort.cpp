@@ -41,14 +41,14 @@ void PairSort::sort_on_host(const Buffer& pairs, std::uint64_t count) {
 
 PairSort::Kernels& PairSort::kernels(bool packed) {
     Kernels& kernels = packed ? packed_ : wide_;
-    if (kernels.count) return kernels;
+    if (kernels.count) return kernels;  // made last
     const DeviceInfo& info = device_.info();
     const std::string defines = std::string(packed ? "-DKEY=uint" : "-DKEY=ulong") +
                                 " -DMAX_BUCKETS=" + std::to_string(1u << most_bucket_bits(info)) +
                                 (info.lanes > 1 ? " -DDIGIT_BITS=11" : " -DDIGIT_BITS=8");
-    kernels.count = device_.kernel("primitives/pair_sort", "pair_count", defines);
     kernels.scatter = device_.kernel("primitives/pair_sort", "pair_scatter", defines);
     kernels.buckets = device_.kernel("primitives/pair_sort", "pair_buckets", defines);
+    kernels.count = device_.kernel("primitives/pair_sort", "pair_count", defines);
     return kernels;
 }
 

@@ -30,11 +30,11 @@ Shape shape_for(const DeviceInfo& info, std::uint32_t n, unsigned bits) {
 void RadixSort::sort(Buffer& keys, Buffer& payload, std::uint32_t n, unsigned bits, bool number) {
     bits = std::max(bits, 1u);
     const Shape shape = shape_for(device_.info(), n, bits);
-    if (!count_kernel_) {
+    if (!count_kernel_) {  // made last
         const std::string defines =
             "-DRADIX_BITS=" + std::to_string(shape.most_digit_bits) + (key_ == Key::Bits64 ? " -DKEY=ulong" : "");
-        count_kernel_ = device_.kernel("primitives/radix_sort", "radix_count", defines);
         scatter_kernel_ = device_.kernel("primitives/radix_sort", "radix_scatter", defines);
+        count_kernel_ = device_.kernel("primitives/radix_sort", "radix_count", defines);
     }
     const std::uint32_t digits = 1u << shape.digit_bits;
     const std::size_t table = std::size_t{shape.runs} * digits * sizeof(std::uint32_t);

@@ -18,7 +18,7 @@ std::uint32_t run_length(const DeviceInfo& info, std::uint32_t n) {
 }  // namespace
 
 void Reduce::run(const Buffer& in, std::uint32_t n) {
-    if (!runs_kernel_) {
+    if (!runs_kernel_) {  // made last
         const std::string defines = std::string(value_ == Value::Float ? "-DVALUE=float" : "-DVALUE=uint") +
                                     " -DOPERATION=" + std::to_string(static_cast<int>(operation_));
         last_kernel_ = device_.kernel("primitives/reduce", "reduce_last", defines);

@@ -18,11 +18,11 @@ std::uint32_t run_length(const DeviceInfo& info, std::uint32_t n) {
 }  // namespace
 
 void Scan::exclusive(const Buffer& in, std::uint32_t n, const Buffer& out) {
-    if (!runs_kernel_) {
-        runs_kernel_ = device_.kernel("primitives/scan", "scan_runs");
+    if (!runs_kernel_) {  // made last, when all else is there
         sums_kernel_ = device_.kernel("primitives/scan", "scan_sums");
         offsets_kernel_ = device_.kernel("primitives/scan", "scan_offsets");
         total_ = device_.allocate(sizeof(std::uint32_t), "the sum of a scan");
+        runs_kernel_ = device_.kernel("primitives/scan", "scan_runs");
     }
     const std::uint32_t per_run = run_length(device_.info(), n);
     const std::uint32_t runs = n == 0 ? 0 : (n - 1) / per_run + 1;

@@ -74,7 +74,7 @@ TEST_CASE("a device that is taken out of use is no more chosen; the last one sta
     CHECK(impl.retire(1, "it is on fire"));
     CHECK(impl.primary() == 2);
     CHECK(impl.crew() == std::vector<std::size_t>{2, 0});
-    CHECK(told == std::vector<std::string>{"device 'of 16' is not used any more: it is on fire"});
+    CHECK(told == std::vector<std::string>{"device 1 ('of 16') failed and is not used any more: it is on fire"});
     CHECK(impl.retire(1, "again"));
     CHECK(told.size() == 1);
     CHECK(impl.retire(0, ""));
