@@ -231,6 +231,9 @@ TEST_CASE("a kernel whose binary cannot be kept works, and is said not to be kep
     CHECK(smallest_kernel(opened->context) == "17");
     CHECK(logged(*opened, "cannot keep kernel module 'smallest'"));
     CHECK(folder.files() == 0);
+    const auto nowhere = to_open("/dev/null/nowhere");
+    CHECK(smallest_kernel(nowhere->context) == "17");
+    CHECK(logged(*nowhere, "cannot keep a compiled kernel in '/dev/null/nowhere'"));
 }
 
 TEST_CASE("the buffer of another is asked for its size with care", "[device]") {

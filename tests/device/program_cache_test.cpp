@@ -110,6 +110,21 @@ TEST_CASE("a cache that cannot be written costs no result", "[host]") {
     CHECK_FALSE(off.load("key").has_value());
 }
 
+TEST_CASE("a cache entry that cannot be read, a folder in its place, costs no result", "[host]") {
+    const Folder folder("cache-folder-entry");
+    std::vector<std::string> lines;
+    const ProgramCache cache(folder.path(), [&](const std::string& line) { lines.push_back(line); });
+    fs::create_directories(cache.path("key") + "/in the way");
+    CHECK_FALSE(cache.load("key").has_value());
+    CHECK(deletions(lines) == 1);
+    cache.store("key", {1, 2});
+    CHECK(lines.size() == 2);
+    CHECK_FALSE(cache.load("key").has_value());
+    fs::remove_all(cache.path("key"));
+    cache.store("key", {1, 2});
+    CHECK(cache.load("key") == std::vector<unsigned char>{1, 2});
+}
+
 TEST_CASE("kernels are built once, then read from the cache, and built again when it is damaged", "[device]") {
     const Folder folder("cache-kernels");
     std::vector<std::string> lines;
