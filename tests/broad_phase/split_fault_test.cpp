@@ -1,0 +1,215 @@
+// Devices that fail in a search: others do their work, the pairs are whole, and the report says so.
+#include <CL/cl.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/scenes/boxes.hpp"
+#include "clinch/pipeline.hpp"
+#include "src/broad_phase/broad_phase_impl.hpp"
+#include "tests/broad_phase/every_algorithm.hpp"
+#include "tests/device/devices.hpp"
+#include "tests/device/faults.hpp"
+
+using namespace clinch;
+using test::Faults;
+
+namespace {
+
+constexpr std::uint32_t devices = 3;
+
+// From a call on, one of a device fails, and all after it.
+Faults::Choice from_call(std::size_t device, std::size_t number) {
+    return [=, seen = std::size_t{0}](std::size_t d, const std::string&, std::size_t) mutable {
+        return d == device && seen++ >= number;
+    };
+}
+
+// A context of several devices whose calls can be made to fail; fresh again at each reset().
+struct Failing {
+    Context context = test::several(devices);
+    Faults faults{context};
+    Failing() { context.impl().least_boxes_a_device = 1; }
+    void reset(bool closed) {
+        faults.watch();
+        context.impl().retired.clear();
+        if (closed)
+            for (auto& device : context.impl().devices) device.reset();
+    }
+    // Calls that each device makes in `work`.
+    template <class Work>
+    std::vector<std::size_t> count(const Work& work) {
+        std::vector<std::size_t> counts(devices, 0);
+        faults.fail(
+            [&](std::size_t d, const std::string&, std::size_t) {
+                ++counts[d];
+                return false;
+            },
+            CL_SUCCESS);
+        work();
+        faults.watch();
+        return counts;
+    }
+    std::size_t retired() const {
+        const auto& list = context.impl().retired;
+        return static_cast<std::size_t>(
+            std::count_if(list.begin(), list.end(), [](const std::string& why) { return !why.empty(); }));
+    }
+};
+
+void check_report(const Report& report, std::size_t device) {
+    REQUIRE(report.warnings.size() == 1);
+    CHECK_THAT(report.warnings[0], Catch::StartsWith("device " + std::to_string(device) + " ('"));
+    CHECK_THAT(report.warnings[0], Catch::Contains("failed"));
+}
+
+// Numbers of calls to fail at: some of `count`, the first and last among them.
+std::vector<std::size_t> numbers_of(std::size_t count, std::size_t most, test::Random& random) {
+    std::vector<std::size_t> numbers{0, count - 1};
+    while (numbers.size() < std::min(most, count)) numbers.push_back(random.below(count));
+    return numbers;
+}
+
+}  // namespace
+
+TEST_CASE("a device that fails in a split search is retired and the pairs are whole", "[device]") {
+    constexpr std::uint64_t seed = 61;
+    test::Random random(seed);
+    Failing failing;
+    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 3000, seed);
+    const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+    for (const std::string& name : test::names_for(failing.context.devices()[0])) {
+        if (!detail::algorithm_named(name).needs_device) continue;
+        BroadPhaseOptions options;
+        options.algorithm = name;
+        for (const bool closed : {false, true}) {  // devices that are yet to be opened fail in that, too
+            failing.reset(closed);
+            const std::vector<std::size_t> calls = failing.count([&] {
+                BroadPhase broad(failing.context, options);
+                broad.find(boxes);
+            });
+            for (std::size_t device = 0; device < devices; ++device) {
+                REQUIRE(calls[device] > 5);
+                for (const std::size_t number : numbers_of(calls[device], closed ? 3 : 8, random)) {
+                    INFO(name << ", device " << device << (closed ? ", closed," : "") << " fails from call " << number
+                              << " of " << calls[device] << ", seed " << seed);
+                    failing.reset(closed);
+                    BroadPhase broad(failing.context, options);
+                    failing.faults.fail(from_call(device, number), CL_OUT_OF_RESOURCES);
+                    CHECK(test::same(broad.find(boxes), expected));
+                    if (failing.retired() == 0) continue;  // a few calls fewer this time
+                    check_report(broad.report(), device);
+                    CHECK_FALSE(failing.context.impl().in_use(device));
+                    // The next search does without.
+                    CHECK(test::same(broad.find(boxes), expected));
+                    CHECK(broad.report().warnings.empty());
+                    CHECK(broad.report().broad_split.size() == devices - 1);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("when all devices fail, the call does, and the last one is asked again", "[device]") {
+    Failing failing;
+    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 2000, 3);
+    BroadPhaseOptions options;
+    options.algorithm = "grid";
+    if (!detail::runs_on(detail::algorithm_named("grid"), failing.context.devices()[0])) options.algorithm = "brute";
+    BroadPhase broad(failing.context, options);
+    failing.faults.fail(
+        [](std::size_t, const std::string& name, std::size_t) { return name == "clEnqueueNDRangeKernel"; },
+        CL_OUT_OF_RESOURCES);
+    CHECK_THROWS_AS(broad.find(boxes), Error);
+    CHECK(failing.retired() == devices - 1);
+    failing.faults.watch();
+    CHECK(test::same(broad.find(boxes), test::pairs_by_hand(boxes)));
+    CHECK(broad.report().broad_split.empty());
+}
+
+TEST_CASE("a search on one device goes to the next when it fails", "[device]") {
+    Failing failing;
+    failing.context.impl().least_boxes_a_device = 1000000;
+    const std::vector<Aabb> boxes = scenes::make_boxes("density", 12000, 4);
+    const std::vector<Pair> expected = test::pairs_by_sweep(boxes);
+    const std::size_t first = failing.context.impl().primary();
+    BroadPhaseOptions options;
+    options.algorithm = "bvh";
+    for (const std::size_t number : {0u, 3u, 9u, 20u}) {
+        INFO("from call " << number);
+        failing.reset(true);
+        BroadPhase broad(failing.context, options);
+        failing.faults.fail(from_call(first, number), CL_DEVICE_NOT_AVAILABLE);
+        CHECK(broad.count(boxes) == expected.size());
+        check_report(broad.report(), first);
+        CHECK(test::same(broad.find(boxes), expected));
+        CHECK(broad.report().warnings.empty());
+    }
+    // Updates, of which the device holds what it needs for the next.
+    if (!detail::runs_on(detail::algorithm_named("grid"), failing.context.devices()[0])) return;
+    options.algorithm = "grid";
+    options.events = true;
+    failing.reset(true);
+    BroadPhase broad(failing.context, options);
+    std::vector<Aabb> moved = boxes;
+    broad.find(moved);
+    std::vector<Pair> now = expected;
+    for (std::uint32_t step = 0; step < 4; ++step) {
+        const std::vector<std::uint32_t> changed{step, step + 100, step + 5000};
+        for (const std::uint32_t i : changed) moved[i].max[step % 3] += 2.5f;
+        if (step == 2) failing.faults.fail(from_call(first, 7), CL_DEVICE_NOT_AVAILABLE);
+        const std::vector<Pair> before = now;
+        now = test::pairs_by_sweep(moved);
+        CHECK(test::same(broad.update(moved, changed), now));
+        const bool lost = broad.report().warnings.size() == 2;  // with the list before
+        if (step == 2) CHECK_THAT(broad.report().warnings.at(0), Catch::Contains("failed"));
+        CHECK(broad.added().size() == (lost ? now.size() : now.size() - before.size()));
+    }
+}
+
+TEST_CASE("a step of a pipeline goes to other devices when one fails", "[device]") {
+    Failing failing;
+    failing.context.impl().least_boxes_a_device = 1000;
+    Scene scene;
+    const ShapeId ball = scene.add_shape(Sphere{0.6});
+    test::Random random(8);
+    for (int i = 0; i < 4000; ++i) {
+        const auto at = [&] { return random.between(0.0, 14.0); };
+        const double x = at(), y = at(), z = at();
+        scene.add_body({ball, Pose{{x, y, z}}});
+    }
+    scene.add_body({scene.add_shape(Plane{{0, 0, 1}, 0.3}), Pose{}});
+    PipelineOptions options;
+    options.broad_phase.algorithm = "brute";
+    options.contacts = false;
+    options.narrow_phase.contacts_per_pair = 1;
+    Context alone = Context::host_only();
+    PipelineOptions on_host = options;
+    on_host.broad_phase.algorithm = "host-brute";
+    Pipeline reference(alone, on_host);
+    const std::string expected = test::bytes(reference.step(scene).pairs());
+    std::string contacts;
+    const std::vector<std::size_t> calls = failing.count([&] {
+        Pipeline pipeline(failing.context, options);
+        const StepResult& result = pipeline.step(scene);
+        CHECK(test::bytes(result.pairs()) == expected);
+        CHECK(result.report().broad_split.size() == devices);
+        contacts = test::bytes(result.contacts());
+    });
+    const std::uint64_t seed = 9;
+    test::Random numbers(seed);
+    for (std::size_t device = 0; device < devices; ++device)
+        for (const std::size_t number : numbers_of(calls[device], 10, numbers)) {
+            INFO("device " << device << " fails from call " << number << " of " << calls[device] << ", seed " << seed);
+            failing.reset(false);
+            Pipeline pipeline(failing.context, options);
+            failing.faults.fail(from_call(device, number), CL_OUT_OF_RESOURCES);
+            const StepResult& result = pipeline.step(scene);
+            CHECK(test::bytes(result.pairs()) == expected);
+            CHECK(test::bytes(result.contacts()) == contacts);
+            if (failing.retired() > 0) CHECK_FALSE(result.report().warnings.empty());
+        }
+}
