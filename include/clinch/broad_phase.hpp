@@ -101,7 +101,7 @@ public:
     /// The pairs that were in the list before and are not in the last one, ascending.
     View<const Pair> removed() const noexcept;
 
-    /// Counts and times of the last call that returned.
+    /// Counts and times of the last call; of one that threw there are none.
     const Report& report() const noexcept;
 
     /// The library's own view; not for users.

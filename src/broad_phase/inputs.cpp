@@ -22,10 +22,11 @@ View<const Aabb> BoxInput::on_host() {
 cl_mem BoxInput::on(Device& device) {
     if (device_ != &device) {
         const View<const Aabb> boxes = on_host();
-        device.reserve(*staging_, boxes.size() * sizeof(Aabb), "boxes");
-        device.write(*staging_, boxes.data(), boxes.size() * sizeof(Aabb));
+        Buffer& staging = staging_ != nullptr ? *staging_ : own_;
+        device.reserve(staging, boxes.size() * sizeof(Aabb), "boxes");
+        device.write(staging, boxes.data(), boxes.size() * sizeof(Aabb));
         device_ = &device;
-        memory_ = staging_->handle();
+        memory_ = staging.handle();
         first_ = 0;
     }
     return memory_;

@@ -34,6 +34,7 @@ private:
     Device* device_ = nullptr;
     cl_mem memory_ = nullptr;
     Buffer* staging_ = nullptr;
+    Buffer own_;  // where they go from one device to another
     std::uint64_t first_ = 0;
     std::uint32_t count_ = 0;
 };

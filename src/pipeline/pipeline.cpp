@@ -62,6 +62,7 @@ struct StepResult::Impl {
     bool nothing_changed(const Scene& scene) const;
     void step_again();
     void start_afresh();
+    void leave_bounds();
     void leave_device(std::vector<std::string>& warnings);
     View<const Pair> find_changed(const detail::AlgorithmRow& row, const detail::FilterInput& filters);
     detail::FilterInput filters(const Scene& scene);
@@ -87,10 +88,15 @@ void StepResult::Impl::start_afresh() {
     stepped_identity.reset();
 }
 
+void StepResult::Impl::leave_bounds() {
+    device_bounds.reset();
+    planes = detail::PlanePairs();
+}
+
 // The device that all was on has failed.
 void StepResult::Impl::leave_device(std::vector<std::string>& warnings) {
     start_afresh();
-    planes = detail::PlanePairs();
+    leave_bounds();
     if (!broad.impl().drop_device())
         warnings.emplace_back("the list of pairs before was lost with the device: all pairs are told as added");
 }
@@ -112,6 +118,7 @@ detail::FilterInput StepResult::Impl::filters(const Scene& scene) {
 View<const Pair> StepResult::Impl::find_on_device(const Scene& scene, const detail::AlgorithmRow& row,
                                                   std::size_t& changed) {
     detail::Device& device = broad.impl().device();
+    if (device_bounds && &device_bounds->device() != &device) leave_bounds();  // that device was retired
     if (!device_bounds) device_bounds.emplace(device);
     const detail::Stopwatch upload;
     changed = device_bounds->upload(scene);
@@ -128,7 +135,7 @@ View<const Pair> StepResult::Impl::find_on_device(const Scene& scene, const deta
 View<const Pair> StepResult::Impl::find_changed(const detail::AlgorithmRow& row, const detail::FilterInput& filters) {
     BroadPhase::Impl& impl = broad.impl();
     const View<const std::uint32_t> sent = device_bounds->sent();
-    detail::BoxInput input(impl.device(), device_bounds->boxes().handle(), 0, static_cast<std::uint32_t>(rows));
+    detail::BoxInput input(device_bounds->device(), device_bounds->boxes().handle(), 0, static_cast<std::uint32_t>(rows));
     if (impl.listed_boxes == rows && stepped_rows == rows) {
         if (sent.empty() && !filters_changed) return impl.same_again();
         if (impl.steps_pay(row, rows, sent.size())) {
@@ -156,7 +163,7 @@ void StepResult::Impl::add_plane_pairs(const Scene& scene) {
     const detail::Stopwatch watch;
     const std::vector<detail::WorldPlane> in_world = detail::world_planes(scene, plane_rows);
     detail::FindCounts counts;
-    const std::vector<Pair>& found = on_device ? planes.find(broad.impl().device(), in_world, device_bounds->boxes(),
+    const std::vector<Pair>& found = on_device ? planes.find(device_bounds->device(), in_world, device_bounds->boxes(),
                                                              static_cast<std::uint32_t>(rows), filters(scene), counts)
                                                : planes.find(in_world, host_bounds->boxes(), filters(scene), counts);
     report.skipped.pairs_filtered += counts.pairs_filtered;
@@ -243,7 +250,7 @@ View<const Aabb> StepResult::Impl::boxes() {
     if (!on_device) return host_bounds ? host_bounds->boxes() : View<const Aabb>{};
     if (!boxes_read) {
         std::vector<Aabb> read(rows);
-        broad.impl().device().read(device_bounds->boxes(), read.data(), rows * sizeof(Aabb));
+        device_bounds->device().read(device_bounds->boxes(), read.data(), rows * sizeof(Aabb));
         boxes_read = std::move(read);
     }
     return *boxes_read;

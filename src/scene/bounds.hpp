@@ -55,6 +55,7 @@ public:
     /// One Aabb a row of the scene (the buffer may be longer); NaN for rows without a box. Valid until the next
     /// upload.
     const Buffer& boxes() const { return boxes_; }
+    Device& device() const noexcept { return device_; }
 
 private:
     void send_rows(const Scene& scene, View<const std::uint32_t> rows);
