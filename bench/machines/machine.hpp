@@ -29,7 +29,7 @@ struct Host {
 struct Machine {
     std::vector<Device> devices;
     Host host{};
-    double noise = 0.0;  ///< a device's time of a step is off by this part at most, either way
+    double noise = 0.0;  ///< a device takes longer for all of a step by this part at most, another each step
 };
 
 /// `count` devices of speed 1; or of speeds in [low, high], the same for the same seed and any count.

@@ -196,8 +196,7 @@ Step Simulation::step(const Load& load) {
     ChunkQueue queue(chunks, takers);
     const double begin = clock_.now();
     Run run(machine_, load, queue, clock_);
-    for (std::size_t i = 0; i < count; ++i)
-        run.set_pace(i, random_.between(1.0 - machine_.noise, 1.0 + machine_.noise));
+    for (std::size_t i = 0; i < count; ++i) run.set_pace(i, random_.between(1.0, 1.0 + machine_.noise));
     run.run();
     clock_.set(begin + run.end());
 
