@@ -18,9 +18,9 @@ constexpr double noise = 0.1, spread = 0.3;
 using MakeMachine = std::function<machines::Machine(std::size_t)>;
 using MakeLoad = std::function<machines::Load(std::uint32_t)>;
 
-Curve curve(std::pair<std::string, MakeMachine> devices, std::pair<double, MakeLoad> load, std::size_t most,
-            std::uint64_t seed) {
-    Curve found{{}, std::move(devices.first), load.first, {}};
+Curve curve(const std::pair<std::string, MakeMachine>& devices, const std::pair<double, MakeLoad>& load,
+            std::size_t most, std::uint64_t seed) {
+    Curve found{{}, devices.first, load.first, {}};
     std::vector<std::size_t> counts;
     for (const std::size_t count : {1u, 2u, 3u, 4u, 6u, 8u, 12u, 16u, 24u, 32u, 48u, 64u})
         if (count <= most) counts.push_back(count);
@@ -49,10 +49,10 @@ Machine simulated(std::size_t most, unsigned long long seed) {
         "simulated",
         "bench/machines",
         {"each device: a link of 12 GB/s each way, 30 us a step and 10 us a chunk to begin",
-         "the host's memory moves 400 GB/s, all transfers and the copy of the results together",
+         "the host's memory moves 400 GB/s unless said otherwise, all transfers and the copy of the results together",
          "results are put one behind the other; nothing is merged pair by pair",
-         "density: 45 ns and 24 bytes a box, 3 ns and 8 bytes a pair at speed 1, a pair a body; a chunk's "
-         "work and pairs differ by up to 30 %; no box lies in two chunks",
+         "density: 45 ns and 24 bytes a box, 3 ns and 8 bytes a pair at speed 1, a pair a body",
+         "density: a chunk's work and pairs differ by up to 30 %; no box lies in two chunks",
          "cubes: 0.1 ns a test at speed 1, all boxes sent to every device, a pair a body",
          "64 chunks a device; a device takes up to 10 % longer for a step, another part each step; means of 8 steps"},
         {}};

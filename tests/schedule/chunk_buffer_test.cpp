@@ -44,6 +44,22 @@ TEST_CASE("a cancelled chunk buffer gives and takes nothing", "[host][schedule]"
     CHECK(buffer.cancelled());
 }
 
+TEST_CASE("cancelling wakes those who wait on either side", "[host][schedule]") {
+    for (const bool full : {false, true}) {
+        INFO("waiting while it is " << (full ? "full" : "empty"));
+        ChunkBuffer<int> buffer(1, 1);
+        if (full) CHECK(buffer.put(1));
+        std::atomic<bool> refused{false};
+        test::or_abort("one waits for a chunk buffer that is cancelled", [&buffer, &refused, full] {
+            std::thread waiting([&buffer, &refused, full] { refused = full ? !buffer.put(2) : !buffer.take(); });
+            for (int i = 0; i < 1000; ++i) std::this_thread::yield();  // mostly it waits by then
+            buffer.cancel();
+            waiting.join();
+        });
+        CHECK(refused);
+    }
+}
+
 namespace {
 
 enum class Fails { Nobody, Producer, Consumer };
