@@ -41,7 +41,7 @@ std::vector<std::size_t> amounts(const std::vector<double>& weights, std::size_t
 
 }  // namespace
 
-ChunkQueue::ChunkQueue(std::uint32_t chunks, std::vector<Taker> takers) {
+ChunkQueue::ChunkQueue(std::uint32_t chunks, const std::vector<Taker>& takers) {
     for (const Taker& taker : takers) {
         check(taker.fraction, "the fraction");
         check(taker.seconds_a_chunk, "seconds_a_chunk");
@@ -64,11 +64,13 @@ ChunkQueue::ChunkQueue(std::uint32_t chunks, std::vector<Taker> takers) {
 // Adds ascending `chunks` to what `to` have: each in proportion to its fraction, in the order of finishing.
 void ChunkQueue::deal(const std::vector<std::uint32_t>& chunks, const std::vector<std::size_t>& to) {
     std::vector<double> weights;
+    weights.reserve(to.size());
     for (const std::size_t taker : to) weights.push_back(takers_[taker].cost.fraction);
     if (std::none_of(weights.begin(), weights.end(), [](double weight) { return weight > 0.0; }))
         weights.assign(weights.size(), 1.0);
     const std::vector<std::size_t> amount = amounts(weights, chunks.size());
     std::vector<std::size_t> dealt(to.size(), 0), before;
+    before.reserve(to.size());
     for (const std::size_t taker : to) before.push_back(takers_[taker].own.size());
 
     using Next = std::pair<double, std::size_t>;  // when the taker's next chunk would be finished

@@ -27,7 +27,7 @@ public:
     };
 
     /// Throws Error (InvalidArgument) if a number is negative or not finite. Cost: chunks * log(takers).
-    ChunkQueue(std::uint32_t chunks, std::vector<Taker> takers);
+    ChunkQueue(std::uint32_t chunks, const std::vector<Taker>& takers);
 
     /// The next chunk for `taker`: of its own, ascending. If it has none left, half (rounded up, the highest-numbered)
     /// of what is left to the one that will take longest become its own first. Less than half if only that pays, and

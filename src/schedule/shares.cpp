@@ -54,7 +54,8 @@ std::vector<Shares::Sample> Shares::samples(const std::vector<Measure>& measures
     if (!std::isfinite(whole)) return found;
     for (std::size_t i = 0; i < devices_.size(); ++i) {
         const double part = measures[i].work / whole, seconds = measures[i].seconds;
-        if (devices_[i].retired || !(part > 0.0) || !std::isfinite(seconds) || !(seconds > 0.0)) continue;
+        if (devices_[i].retired || !(part > 0.0 && part <= 1.0) || !std::isfinite(seconds) || !(seconds > 0.0))
+            continue;
         found.push_back({i, part, seconds});
     }
     return found;
@@ -115,7 +116,7 @@ void Shares::rescale(const std::vector<Sample>& samples) {
 void Shares::learn(Device& device, const Sample& sample) {
     const double part = sample.part, seconds = sample.seconds;
     const double expected = device.latency + part * device.all, error = seconds - expected;
-    const double random = noise * std::max(seconds, expected);
+    const double random = noise * seconds;
     device.latency_variance += std::pow(drift * device.latency, 2) + std::pow(0.1 * drift * seconds, 2);
     device.all_variance += std::pow(drift * device.all, 2);
     const auto variance = [&device, part, random] {
@@ -128,6 +129,7 @@ void Shares::learn(Device& device, const Sample& sample) {
         return;
     }
     if (!device.known || far) {  // nothing is known, or what is known is no longer true: mostly the pace is to learn
+        if (!device.pays) device.latency = std::min(device.latency, 0.5 * seconds);
         device.latency_variance = std::pow(0.5 * seconds, 2);
         device.all_variance = std::pow(2.0 * std::max(device.all, seconds / part), 2);
         device.covariance = 0.0;

@@ -1,0 +1,65 @@
+// clinch_scaling: how a step's time falls with the number of devices, as JSON. See bench/plot_scaling.py.
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "bench/scaling/curve.hpp"
+
+namespace {
+
+using namespace clinch::scaling;
+using Json = nlohmann::ordered_json;
+
+Json to_json(const Curve& curve) {
+    Json points = Json::array();
+    for (const Point& point : curve.points)
+        points.push_back({{"devices", point.devices},
+                          {"seconds", point.seconds},
+                          {"ideal_seconds", point.ideal_seconds},
+                          {"efficiency", point.ideal_seconds / point.seconds},
+                          {"stolen", point.stolen}});
+    return {{"load", curve.load}, {"bodies", curve.bodies}, {"devices", curve.devices}, {"points", points}};
+}
+
+Json to_json(const Machine& machine) {
+    Json curves = Json::array();
+    for (const Curve& curve : machine.curves) curves.push_back(to_json(curve));
+    return {
+        {"machine", machine.machine}, {"name", machine.name}, {"assumptions", machine.assumptions}, {"curves", curves}};
+}
+
+int run(int argc, char** argv) {
+    CLI::App app("Writes time and efficiency of a step by the number of devices, as JSON");
+    std::string path;
+    std::size_t most = 64;
+    unsigned long long seed = 1;
+    app.add_option("-o,--output", path, "default: standard output");
+    app.add_option("--devices", most, "at most; default 64")->check(CLI::Range(1, 64));
+    app.add_option("--seed", seed, "of speeds, work and noise; default 1");
+    CLI11_PARSE(app, argc, argv);
+    const Json content = {
+        {"program", "clinch_scaling"}, {"seed", seed}, {"machines", Json::array({to_json(simulated(most, seed))})}};
+    if (path.empty()) {
+        std::cout << content.dump(1) << '\n';
+        return 0;
+    }
+    std::ofstream file(path);
+    file << content.dump(1) << '\n';
+    file.close();
+    if (!file) throw std::runtime_error("cannot write " + path);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const std::exception& error) {
+        std::cerr << "clinch_scaling: " << error.what() << '\n';
+        return 1;
+    }
+}
