@@ -93,8 +93,11 @@ public:
 
     const NarrowReport& report() const noexcept;
 
-private:
+    /// The library's own view; not for users.
     struct Impl;
+    Impl& impl() const noexcept { return *impl_; }
+
+private:
     std::unique_ptr<Impl> impl_;
 };
 
