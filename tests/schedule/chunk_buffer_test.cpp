@@ -1,0 +1,131 @@
+#include "src/schedule/chunk_buffer.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "tests/random.hpp"
+#include "tests/schedule/watchdog.hpp"
+
+using namespace clinch;
+using detail::ChunkBuffer;
+
+TEST_CASE("a chunk buffer keeps the order and ends when its producers do", "[host][schedule]") {
+    ChunkBuffer<int> buffer(3, 1);
+    CHECK(buffer.put(1));
+    CHECK(buffer.put(2));
+    CHECK(buffer.take() == 1);
+    CHECK(buffer.put(3));
+    CHECK(buffer.put(4));
+    buffer.add_producer();
+    buffer.producer_done();
+    CHECK(buffer.take() == 2);
+    buffer.producer_done();
+    CHECK(buffer.take() == 3);
+    CHECK(buffer.take() == 4);
+    CHECK_FALSE(buffer.take());
+    CHECK_FALSE(buffer.cancelled());
+    CHECK(buffer.most_held() == 3);
+    CHECK_THROWS_AS(ChunkBuffer<int>(0), Error);
+}
+
+TEST_CASE("a cancelled chunk buffer gives and takes nothing", "[host][schedule]") {
+    ChunkBuffer<std::unique_ptr<int>> buffer(2, 1);
+    CHECK(buffer.put(std::make_unique<int>(1)));
+    buffer.cancel();
+    CHECK_FALSE(buffer.take());
+    CHECK_FALSE(buffer.put(std::make_unique<int>(2)));
+    CHECK(buffer.cancelled());
+}
+
+namespace {
+
+enum class Fails { Nobody, Producer, Consumer };
+
+struct Streamed {
+    std::vector<std::uint32_t> taken;
+    std::uint32_t put = 0;
+    std::size_t most_held = 0;
+    int caught = 0;
+    bool cancelled = false;
+};
+
+// Producers put 0 .. 999 between them; one side may throw at a random place.
+Streamed stream(std::uint64_t seed, Fails fails) {
+    test::Random random(seed);
+    const std::size_t producers = 1 + random.below(4), consumers = 1 + random.below(4);
+    const auto fails_at = static_cast<std::uint32_t>(random.below(1000));
+    ChunkBuffer<std::uint32_t> buffer(1 + random.below(5), producers);
+    std::vector<std::atomic<std::uint32_t>> taken(1000);
+    std::atomic<std::uint32_t> next{0}, put{0}, count{0};
+    std::atomic<int> caught{0};
+    const auto guarded = [&caught](const auto& body) {
+        try {
+            body();
+        } catch (const std::runtime_error&) {
+            ++caught;
+        }
+    };
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < producers; ++i)
+        threads.emplace_back(guarded, [&] {
+            const ChunkBuffer<std::uint32_t>::Producer producer(buffer);
+            for (std::uint32_t k = next++; k < 1000; k = next++) {
+                if (fails == Fails::Producer && k == fails_at) throw std::runtime_error("producer");
+                if (!buffer.put(k)) return;
+                ++put;
+            }
+        });
+    for (std::size_t i = 0; i < consumers; ++i)
+        threads.emplace_back(guarded, [&] {
+            const ChunkBuffer<std::uint32_t>::Consumer consumer(buffer);
+            while (const std::optional<std::uint32_t> k = buffer.take()) {
+                ++taken[*k];
+                if (fails == Fails::Consumer && count++ == fails_at) throw std::runtime_error("consumer");
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    Streamed result;
+    for (const std::atomic<std::uint32_t>& times : taken) result.taken.push_back(times.load());
+    result.put = put.load();
+    result.most_held = buffer.most_held();
+    result.caught = caught.load();
+    result.cancelled = buffer.cancelled();
+    return result;
+}
+
+Streamed stream_or_abort(std::uint64_t seed, Fails fails) {
+    Streamed result;
+    test::or_abort("threads on one chunk buffer", [&result, seed, fails] { result = stream(seed, fails); });
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("producers and consumers pass every item once", "[host][schedule]") {
+    for (std::uint64_t seed = 700; seed < 720; ++seed) {
+        INFO("seed " << seed);
+        const Streamed found = stream_or_abort(seed, Fails::Nobody);
+        CHECK(found.taken == std::vector<std::uint32_t>(1000, 1));
+        CHECK(found.put == 1000);
+        CHECK(found.most_held >= 1);
+        CHECK(found.most_held <= 5);
+        CHECK_FALSE(found.cancelled);
+    }
+}
+
+TEST_CASE("an exception of one side does not hang the other", "[host][schedule]") {
+    for (std::uint64_t seed = 720; seed < 760; ++seed) {
+        INFO("seed " << seed);
+        const Streamed found = stream_or_abort(seed, seed % 2 == 0 ? Fails::Producer : Fails::Consumer);
+        CHECK(found.caught == 1);
+        CHECK(found.cancelled);
+        CHECK(*std::max_element(found.taken.begin(), found.taken.end()) <= 1);
+    }
+}
