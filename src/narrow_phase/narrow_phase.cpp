@@ -7,6 +7,7 @@
 
 #include "clinch/error.hpp"
 #include "src/device/stopwatch.hpp"
+#include "src/narrow_phase/contact_list.hpp"
 #include "src/narrow_phase/host_narrow.hpp"
 #include "src/narrow_phase/matrix.hpp"
 #include "src/narrow_phase/narrow_phase_impl.hpp"
@@ -30,7 +31,8 @@ void check_options(const NarrowPhaseOptions& options) {
 
 }  // namespace
 
-NarrowPhase::Impl::Impl(Context& c, const NarrowPhaseOptions& o) : context(c.impl()), settings(o) {
+NarrowPhase::Impl::Impl(Context& c, const NarrowPhaseOptions& o)
+    : context(c.impl()), settings(o), devices(context, settings) {
     check_options(o);
 }
 
@@ -43,36 +45,48 @@ bool NarrowPhase::Impl::worth_a_device(std::size_t pairs) const {
 
 void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs, bool touching_only, WarmStart* from) {
     const Stopwatch total;
-    contacts.clear();
-    touching.clear();
+    result.clear();
     report = NarrowReport{};
     report.pairs = pairs.size();
     for (const MatrixRow& row : matrix()) report.buckets.push_back({classes_text(row), row.module, {}, 0, 0});
     const Stopwatch upload;
     if (settings.shapes.update(scene)) {
         settings.plans.shapes_changed();
-        if (worker) worker->shapes_changed();  // also where this call has no need of the device
+        devices.shapes_changed();  // also where this call has no need of them
     }
     report.ms.upload = upload.ms();
     try {
-        if (worth_a_device(pairs.size()))
-            find_on_device({scene, pairs, touching_only, from != nullptr ? &from->impl() : nullptr});
-        else
-            find_on_host({scene, pairs, touching_only, nullptr});
+        find_somewhere({scene, pairs, touching_only, from != nullptr ? &from->impl() : nullptr});
     } catch (...) {
-        contacts.clear();
-        touching.clear();
+        result.clear();
         if (from != nullptr) from->clear();
-        if (worker) worker->forget();
+        devices.forget();
         throw;
     }
     finish_report(touching_only);
     report.ms.total = total.ms();
 }
 
+// Once more for as long as devices fail and others are left.
+void NarrowPhase::Impl::find_somewhere(const NarrowCall& call) {
+    bool taken = false;  // what is kept of the pairs
+    while (worth_a_device(call.pairs.size())) {
+        const Stopwatch upload;
+        if (call.warm != nullptr)
+            report.warm = taken ? call.warm->restore(0, call.pairs.size()) : call.warm->take(call.pairs);
+        taken = true;
+        report.ms.upload += upload.ms();
+        if (devices.find(call, result, report)) return;
+        result.clear();
+    }
+    if (taken && call.warm != nullptr) call.warm->restore(0, call.pairs.size());
+    report.warm = 0;
+    find_on_host({call.scene, call.pairs, call.only_pairs, nullptr});
+}
+
 void NarrowPhase::Impl::finish_report(bool touching_only) {
-    report.contacts = touching_only ? touching.size() : contacts.size();
-    if (settings.options.tolerance) report.tolerance_missed = count_above(contacts, *settings.options.tolerance);
+    report.contacts = result.size(touching_only);
+    if (settings.options.tolerance) report.tolerance_missed = count_above(result.contacts, *settings.options.tolerance);
     const auto is_empty = [](const BucketReport& bucket) { return bucket.pairs == 0; };
     report.cells_skipped =
         static_cast<std::uint64_t>(std::count_if(report.buckets.begin(), report.buckets.end(), is_empty));
@@ -102,39 +116,9 @@ void NarrowPhase::Impl::find_on_host(const NarrowCall& call) {
         if (!call.only_pairs && settings.options.contacts_per_pair > 1)
             points = manifolds_on_host(call.scene, settings.shapes, answers, settings.options.contacts_per_pair);
         chunk.take(std::move(answers), std::move(points));
-        append(call, chunk);
+        result.append(call, chunk);
     }
     report.ms.routines = watch.ms();
-}
-
-void NarrowPhase::Impl::append(const NarrowCall& call, ChunkContacts& chunk) {
-    if (call.only_pairs)
-        chunk.write(touching.grow(chunk.count()));
-    else
-        chunk.write(call.scene, contacts.grow(chunk.count()));
-    chunk.release();
-}
-
-void NarrowPhase::Impl::find_on_device(const NarrowCall& call) {
-    if (!worker) {
-        worker = std::make_unique<NarrowWorker>(context.open(context.primary()), settings);
-        work = std::make_unique<ChunkWork>(*worker);
-    }
-    worker->start_call();
-    worker->begin(call);
-    const Stopwatch upload;
-    if (call.warm != nullptr) report.warm = call.warm->take(call.pairs);
-    report.ms.upload += upload.ms();
-    for (std::size_t first = 0; first < call.pairs.size(); first += Slots::chunk_pairs) {
-        work->solve(call, first, std::min(Slots::chunk_pairs, call.pairs.size() - first));
-        const Stopwatch gather;
-        append(call, work->contacts());
-        worker->share().ms.gather += gather.ms();
-    }
-    worker->share().add_to(report);
-    const Stopwatch finish;
-    if (worker->scene().has_margins()) drop_beyond_margins(call.scene, contacts);
-    report.ms.gather += finish.ms();
 }
 
 NarrowPhase::NarrowPhase(Context& context, const NarrowPhaseOptions& options)
@@ -145,12 +129,12 @@ NarrowPhase& NarrowPhase::operator=(NarrowPhase&& other) noexcept = default;
 
 View<const Contact> NarrowPhase::find(const Scene& scene, View<const Pair> pairs, WarmStart* warm) {
     impl_->find(scene, pairs, false, warm);
-    return impl_->contacts.view();
+    return impl_->result.contacts.view();
 }
 
 View<const Pair> NarrowPhase::touching(const Scene& scene, View<const Pair> pairs, WarmStart* warm) {
     impl_->find(scene, pairs, true, warm);
-    return impl_->touching.view();
+    return impl_->result.touching.view();
 }
 
 const NarrowReport& NarrowPhase::report() const noexcept {
