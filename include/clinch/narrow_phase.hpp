@@ -81,6 +81,9 @@ struct NarrowReport {
 };
 
 /// Finds the contacts of candidate pairs, or which of them touch. Keeps what it sent and its buffers between calls.
+/// Some hundred thousand pairs or more are shared out among the devices of the Context that give the same answers as
+/// the one that does smaller calls (the same hardware under the same driver); the result is, byte for byte, that of
+/// one. A device that fails is not used any more, and its part is done by others: NarrowReport::warnings.
 class NarrowPhase {
 public:
     /// Options out of their range are InvalidArgument. `context` must outlive this object. Builds nothing yet.

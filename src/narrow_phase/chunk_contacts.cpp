@@ -234,7 +234,7 @@ void ChunkContacts::take(std::vector<HostAnswer> answers, std::vector<FewPoints>
     from_ = std::move(from);
 }
 
-void ChunkContacts::release() noexcept {
+void ChunkContacts::release() {
     from_ = std::monostate();
     points_ = std::monostate();
     count_ = 0;

@@ -37,7 +37,7 @@ public:
     /// Takes those answers that are hits, or, if there are any, the hits' points.
     void take(std::vector<HostAnswer> answers, std::vector<FewPoints> points);
     /// Holds nothing any more.
-    void release() noexcept;
+    void release();
 
     /// Rows that write() writes.
     std::size_t count() const noexcept { return count_; }

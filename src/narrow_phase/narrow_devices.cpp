@@ -60,7 +60,7 @@ std::vector<std::size_t> NarrowDevices::alike() const {
 std::vector<std::size_t> NarrowDevices::crew_for(std::size_t chunks) {
     const std::size_t most = std::max<std::size_t>(1, chunks / least_chunks);
     if (most == 1) return {context_.primary()};
-    const std::vector<std::size_t> devices = alike();
+    std::vector<std::size_t> devices = alike();
     if (devices.size() == 1) {
         shares_.reset();
         sharing_.clear();
@@ -138,11 +138,11 @@ bool NarrowDevices::find(const NarrowCall& call, NarrowResult& result, NarrowRep
 }
 
 void NarrowDevices::find_on_one(const NarrowCall& call, std::size_t device, NarrowResult& result) {
-    const Stopwatch watch;
     NarrowMember& only = member(device);
-    for (std::size_t first = 0; first < call.pairs.size(); first += chunk_pairs)
-        only.append_chunk(call, first, std::min(chunk_pairs, call.pairs.size() - first), result);
-    only.worker().share().ms.total = watch.ms();
+    only.worker().timed([&] {
+        for (std::size_t first = 0; first < call.pairs.size(); first += chunk_pairs)
+            only.append_chunk(call, first, std::min(chunk_pairs, call.pairs.size() - first), result);
+    });
 }
 
 bool NarrowDevices::find_on_several(const NarrowCall& call, const std::vector<std::size_t>& crew, NarrowResult& result,
@@ -180,7 +180,7 @@ void NarrowDevices::learn(std::size_t chunks) {
             continue;
         }
         const NarrowShare& share = members_[device]->worker().share();
-        measures.push_back({static_cast<double>(share.pairs), share.ms.total / 1000.0});
+        measures.push_back({static_cast<double>(share.pairs), (share.ms.total - share.build_ms) / 1000.0});
     }
     shares_->measured(measures);
     measured_chunks_ = chunks;

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "src/device/crew.hpp"
-#include "src/device/stopwatch.hpp"
 #include "src/primitives/host_parallel.hpp"
 
 namespace clinch::detail {
@@ -73,11 +72,12 @@ bool NarrowSplit::run() {
 }
 
 void NarrowSplit::work(std::size_t k) {
-    const Stopwatch watch;
     std::optional<std::uint32_t> chunk;
     try {
-        while ((chunk = queue_.take(k)))
-            if (is_needed(*chunk)) do_chunk(k, *chunk);
+        members_[k]->worker().timed([&] {
+            while ((chunk = queue_.take(k)))
+                if (is_needed(*chunk)) do_chunk(k, *chunk);
+        });
     } catch (...) {
         // What it had finished before is on the host's side.
         members_[k]->settle(call_, places_, result_);
@@ -85,7 +85,6 @@ void NarrowSplit::work(std::size_t k) {
         throw;
     }
     members_[k]->settle(call_, places_, result_);
-    members_[k]->worker().share().ms.total += watch.ms();
 }
 
 // Throws only what is the device's fault; else says which chunk is wrong.

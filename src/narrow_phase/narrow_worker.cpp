@@ -4,7 +4,6 @@
 #include <string>
 
 #include "src/device/quirks.hpp"
-#include "src/device/stopwatch.hpp"
 #include "src/narrow_phase/matrix.hpp"
 
 namespace clinch::detail {

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "src/device/device.hpp"
+#include "src/device/stopwatch.hpp"
 #include "src/narrow_phase/narrow_call.hpp"
 #include "src/narrow_phase/narrow_scene.hpp"
 
@@ -19,7 +20,8 @@ struct NarrowShare {
     };
     std::uint64_t pairs = 0, chunks = 0;
     std::array<Bucket, 32> buckets;  ///< by row of the matrix
-    NarrowTimes ms;                  ///< `total`: from its first chunk to its last
+    NarrowTimes ms;                  ///< `total`: until its last chunk was done
+    double build_ms = 0.0;           ///< of that, building kernels, which the next call need not
     /// Adds it to a report that has a bucket for each row of the matrix.
     void add_to(NarrowReport& report) const;
 };
@@ -38,6 +40,15 @@ public:
     /// Brings what every chunk of the call needs up to date on the device; at its first chunk.
     void begin(const NarrowCall& call);
     bool began() const noexcept { return began_; }
+    /// Calls `work` and adds how long it took to the share.
+    template <class Work>
+    void timed(const Work& work) {
+        const Stopwatch watch;
+        const double built = device_.report().build_ms;
+        work();
+        share_.build_ms += device_.report().build_ms - built;
+        share_.ms.total += watch.ms();
+    }
     void shapes_changed() noexcept { scene_.shapes_changed(); }
     /// After an error: everything is sent anew.
     void forget() { scene_.forget(); }

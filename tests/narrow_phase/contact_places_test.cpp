@@ -50,7 +50,7 @@ TEST_CASE("a chunk's place is known as soon as all chunks before it are", "[host
 
 TEST_CASE("rows are written by several threads while the list grows", "[host]") {
     constexpr std::uint32_t chunks = 400, threads = 4;
-    const auto rows_of = [](std::uint32_t chunk) { return std::size_t{chunk % 7 * 100}; };
+    const auto rows_of = [](std::uint32_t chunk) { return std::size_t{chunk % 7} * 100; };
     std::vector<std::size_t> firsts(chunks + 1, 0);
     for (std::uint32_t c = 0; c < chunks; ++c) firsts[c + 1] = firsts[c] + rows_of(c);
     for (const std::size_t expected : {std::size_t{0}, firsts[chunks] / 2, 100 * firsts[chunks]}) {
