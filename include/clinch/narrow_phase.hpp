@@ -37,7 +37,8 @@ struct NarrowPhaseOptions {
     bool measure_stages = false;
 };
 
-/// Milliseconds of wall time a stage took.
+/// Milliseconds of wall time a stage took. Where several devices shared a call, the stages are the sums of what their
+/// threads spent, so that they may be more than `total`.
 struct NarrowTimes {
     double total = 0.0;
     double upload = 0.0;     ///< changed bodies and shapes, and the pairs
@@ -56,6 +57,15 @@ struct BucketReport {
     std::uint64_t again = 0;  ///< of those, done in float64 after float32 could not decide
 };
 
+/// What one device did of a call.
+struct DeviceShare {
+    std::size_t index = 0;     ///< its place in Context::devices()
+    std::uint64_t pairs = 0;   ///< candidates it looked at
+    std::uint64_t chunks = 0;  ///< in so many chunks
+    std::uint64_t stolen = 0;  ///< of those, dealt to another device that was slower than expected, or failed
+    double ms = 0.0;           ///< until its last chunk was done
+};
+
 /// Counts and times of the last call.
 struct NarrowReport {
     std::uint64_t pairs = 0;     ///< candidates looked at
@@ -66,9 +76,14 @@ struct NarrowReport {
     std::vector<BucketReport> buckets;
     NarrowTimes ms;
     std::uint64_t peak_device_bytes = 0;
+    std::vector<DeviceShare> devices;   ///< those that had a part in the call; empty where the host did it
+    std::vector<std::string> warnings;  ///< a line for each device that failed and whose work was done again
 };
 
 /// Finds the contacts of candidate pairs, or which of them touch. Keeps what it sent and its buffers between calls.
+/// Some hundred thousand pairs or more are shared out among the devices of the Context that give the same answers as
+/// the one that does smaller calls (the same hardware under the same driver); the result is, byte for byte, that of
+/// one. A device that fails is not used any more, and its part is done by others: NarrowReport::warnings.
 class NarrowPhase {
 public:
     /// Options out of their range are InvalidArgument. `context` must outlive this object. Builds nothing yet.
@@ -93,8 +108,11 @@ public:
 
     const NarrowReport& report() const noexcept;
 
-private:
+    /// The library's own view; not for users.
     struct Impl;
+    Impl& impl() const noexcept { return *impl_; }
+
+private:
     std::unique_ptr<Impl> impl_;
 };
 

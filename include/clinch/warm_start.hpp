@@ -12,7 +12,7 @@ namespace clinch {
 ///
 /// Answers are within their errors as ever, but their last digits, and those of pairs that lie within their error of
 /// the margins, may depend on what is kept: the same calls in the same order give the same bytes on
-/// the same device.
+/// the same device, and on any number of devices of its kind.
 class WarmStart {
 public:
     /// Nothing is kept.

@@ -7,9 +7,9 @@
 
 #include "clinch/aabb.hpp"
 #include "clinch/scene.hpp"
-#include "src/narrow_phase/contact_list.hpp"
 #include "src/narrow_phase/matrix.hpp"
 #include "src/narrow_phase/narrow_scene.hpp"
+#include "src/narrow_phase/slots.hpp"
 
 namespace clinch::detail {
 

@@ -45,16 +45,20 @@ std::size_t WarmStart::Impl::take(View<const Pair> now) {
     sort_old();
     pairs.assign(now.begin(), now.end());
     corners.resize(now.size());
+    return restore(0, pairs.size());
+}
+
+std::size_t WarmStart::Impl::restore(std::size_t first, std::size_t count) {
     std::size_t known = 0;
-    const auto parts = static_cast<std::ptrdiff_t>((now.size() + pairs_a_part - 1) / pairs_a_part);
+    const auto parts = static_cast<std::ptrdiff_t>((count + pairs_a_part - 1) / pairs_a_part);
 #pragma omp parallel for schedule(static) reduction(+ : known) if (parts > 1)
     for (std::ptrdiff_t p = 0; p < parts; ++p) {
-        const std::size_t begin = static_cast<std::size_t>(p) * pairs_a_part;
+        const std::size_t begin = first + static_cast<std::size_t>(p) * pairs_a_part;
         std::size_t at = 0;
-        for (std::size_t i = begin; i < std::min(now.size(), begin + pairs_a_part); ++i) {
-            if (i == begin || before(now[i], now[i - 1])) at = place_of(now[i]);
-            while (at < old_pairs_.size() && before(old_pairs_[old_number(at)], now[i])) ++at;
-            const bool there = at < old_pairs_.size() && !before(now[i], old_pairs_[old_number(at)]);
+        for (std::size_t i = begin; i < std::min(first + count, begin + pairs_a_part); ++i) {
+            if (i == begin || before(pairs[i], pairs[i - 1])) at = place_of(pairs[i]);
+            while (at < old_pairs_.size() && before(old_pairs_[old_number(at)], pairs[i])) ++at;
+            const bool there = at < old_pairs_.size() && !before(pairs[i], old_pairs_[old_number(at)]);
             corners[i] = there ? old_corners_[old_number(at)] : Corners{{none, none, none, none}};
             known += corners[i].any() ? 1U : 0U;
         }

@@ -25,6 +25,10 @@ struct WarmStart::Impl {
     /// Takes new pairs in place of the old; what is known of those that were there before goes with them. Returns how
     /// many. Cost: linear for ascending lists, else n log n.
     std::size_t take(View<const Pair> now);
+    /// What was known of the pairs from number `first` on before the call that take() was for, again: a device that
+    /// failed may have left anything of them. Returns how many there are. Several threads at once, of pairs of their
+    /// own.
+    std::size_t restore(std::size_t first, std::size_t count);
     void clear() noexcept;
 
 private:

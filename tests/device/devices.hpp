@@ -48,6 +48,21 @@ inline Context several(std::uint32_t count) {
     return context;
 }
 
+/// A context that has device `i` several times, each opened as a device of its own.
+inline Context several(std::uint32_t i, std::uint32_t times) {
+    ContextOptions options;
+    options.devices.indices = {i};
+    Context context(options);
+    Context::Impl& impl = context.impl();
+    for (std::uint32_t k = 1; k < times; ++k) {
+        impl.infos.push_back(impl.infos[0]);
+        impl.ids.push_back(impl.ids[0]);
+        impl.id_owners.push_back(impl.id_owners[0]);
+        impl.devices.emplace_back();
+    }
+    return context;
+}
+
 /// Names of the broad-phase algorithms that run on a device: all but those that a quirk of it rules out.
 inline std::vector<std::string> names_for(const DeviceInfo& device) {
     std::vector<std::string> names;

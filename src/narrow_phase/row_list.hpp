@@ -1,0 +1,65 @@
+// Rows of a result on the host, filled chunk by chunk.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <mutex>
+#include <shared_mutex>
+#include <vector>
+
+#include "clinch/view.hpp"
+
+namespace clinch::detail {
+
+/// Grows by chunks; keeps its memory from call to call.
+template <class Row>
+class RowList {
+public:
+    void clear() noexcept { size_ = 0; }
+    std::size_t size() const noexcept { return size_; }
+    View<const Row> view() const noexcept { return {rows_.data(), size_}; }
+    /// Appends room for `by` rows, which the caller writes. Valid until the next call.
+    Row* grow(std::size_t by) {
+        const std::size_t before = size_;
+        size_ += by;
+        if (rows_.size() < size_) rows_.resize(std::max(size_, rows_.size() + rows_.size() / 2));
+        return rows_.data() + before;
+    }
+    /// Calls write(to) with the place of `count` rows from number `first` on; so may several threads at once, for rows
+    /// of their own. What is beyond size() is kept until resize() has it. Where there is no room it is made for about
+    /// `expected` rows.
+    template <class Write>
+    void write_at(std::size_t first, std::size_t count, std::size_t expected, const Write& write) {
+        make_room(first + count, expected);
+        const std::shared_lock<std::shared_mutex> lock(growing_);
+        write(rows_.data() + first);
+    }
+    /// From now on there are so many rows.
+    void resize(std::size_t size) {
+        if (rows_.size() < size) rows_.resize(size);
+        size_ = size;
+    }
+    /// Takes out the rows of which `out` holds; the others keep their order.
+    template <class Out>
+    void drop_if(const Out& out) {
+        Row* const begin = rows_.data();
+        size_ = static_cast<std::size_t>(std::remove_if(begin, begin + size_, out) - begin);
+    }
+
+private:
+    // Not much more than is sure to be needed: what is expected may be wrong.
+    void make_room(std::size_t needed, std::size_t expected) {
+        {
+            const std::shared_lock<std::shared_mutex> lock(growing_);
+            if (rows_.size() >= needed) return;
+        }
+        const std::lock_guard<std::shared_mutex> lock(growing_);
+        if (rows_.size() < needed) rows_.resize(std::max(needed, std::min(expected + expected / 16, 4 * needed)));
+    }
+
+    std::shared_mutex growing_;  // held by one that moves the rows, shared by those that write them
+    std::vector<Row> rows_;      // as long as the longest list was: what is behind size_ is old
+    std::size_t size_ = 0;
+};
+
+}  // namespace clinch::detail
