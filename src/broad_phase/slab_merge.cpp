@@ -1,7 +1,5 @@
 #include "src/broad_phase/slab_merge.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <cstddef>
 
@@ -27,8 +25,8 @@ struct Part {
     std::size_t pairs = 0, place = 0;
 };
 
-bool reaches_over(SlabSpan span) {
-    return span.first != span.last;
+bool has_several(SlabSpan slabs) {
+    return slabs.first != slabs.last;
 }
 
 class SortedMerge {
@@ -50,7 +48,7 @@ public:
         for (std::size_t s = 0; s < part.runs.size(); ++s) {
             const Run& run = part.runs[s];
             pairs += static_cast<std::size_t>(run.end - run.at);
-            if (s > 0) pairs -= count_before(s, run, part.runs_end[s]);
+            pairs -= count_of_others(s, run, part.runs_end[s]);
         }
         return pairs;
     }
@@ -58,20 +56,22 @@ public:
     void write(const Part& part, Pair* out) const {
         std::vector<Run> runs = part.runs;
         for (std::uint32_t a = part.first; a < part.end; ++a) {
-            const SlabSpan span = deal_.span(a);
-            out = reaches_over(span) ? write_common_row(a, span, runs, out) : write_row(a, span.first, runs, out);
+            const SlabSpan in = deal_.member_of(a);
+            out = has_several(in) ? write_common_row(a, in, runs, out) : write_row(a, in.first, runs, out);
         }
     }
 
 private:
-    // Pairs of a run that belong to slabs before: both boxes begin there.
-    std::size_t count_before(std::size_t s, const Run& run, std::uint32_t members_end) const {
+    // Pairs of a run that belong to other slabs: both boxes are members there, too.
+    std::size_t count_of_others(std::size_t s, const Run& run, std::uint32_t members_end) const {
         std::size_t pairs = 0;
         const Pair* row = run.at;
         for (std::uint32_t m = run.member; m < members_end; ++m) {
-            if (deal_.span(box(s, m)).first == s) continue;
-            row = std::lower_bound(row, run.end, m, [](const Pair& pair, std::uint32_t a) { return pair.a < a; });
-            for (; row < run.end && row->a == m; ++row) pairs += deal_.span(box(s, row->b)).first < s ? 1U : 0U;
+            const std::uint32_t a = box(s, m);
+            if (!has_several(deal_.member_of(a))) continue;
+            row =
+                std::lower_bound(row, run.end, m, [](const Pair& pair, std::uint32_t first) { return pair.a < first; });
+            for (; row < run.end && row->a == m; ++row) pairs += deal_.owner(a, box(s, row->b)) != s ? 1U : 0U;
         }
         return pairs;
     }
@@ -89,18 +89,22 @@ private:
         const std::uint32_t* const members = deal_.members(s).data();
         Run& run = runs[s];
         const std::uint32_t member = run.member++;
-        for (; run.at < run.end && run.at->a == member; ++run.at) *out++ = {a, members[run.at->b]};
+        const Pair *at = run.at, *const end = run.end;
+        for (; end - at >= 8 && at[7].a == member; at += 8, out += 8)
+            for (std::size_t k = 0; k < 8; ++k) out[k] = {a, members[at[k].b]};
+        for (; at < end && at->a == member; ++at) *out++ = {a, members[at->b]};
+        run.at = at;
         return out;
     }
     // Those of a box that several slabs have.
-    Pair* write_common_row(std::uint32_t a, SlabSpan span, std::vector<Run>& runs, Pair* out) const {
+    Pair* write_common_row(std::uint32_t a, SlabSpan in, std::vector<Run>& runs, Pair* out) const {
         Pair* const row = out;
-        for (std::size_t s = span.first; s <= span.last; ++s) {
+        for (std::size_t s = in.first; s <= in.last; ++s) {
             Run& run = runs[s];
             const std::uint32_t member = run.member++;
             for (; run.at < run.end && run.at->a == member; ++run.at) {
                 const std::uint32_t b = box(s, run.at->b);
-                if (!belongs_before(deal_, s, a, b)) *out++ = {a, b};
+                if (deal_.owner(a, b) == s) *out++ = {a, b};
             }
         }
         std::sort(row, out, [](const Pair& p, const Pair& q) { return p.b < q.b; });
@@ -112,9 +116,8 @@ private:
 };
 
 std::size_t parts_for(std::uint64_t pairs, std::size_t boxes) {
-    const auto threads = static_cast<std::size_t>(std::max(1, omp_get_max_threads()));
     const std::size_t most = static_cast<std::size_t>(pairs) / least_pairs_a_part + 1;
-    return std::max<std::size_t>(1, std::min({most, 16 * threads, boxes}));
+    return std::max<std::size_t>(1, std::min({most, 16 * host_threads(), boxes}));
 }
 
 void merge_sorted(const SlabDeal& deal, const SlabLists& lists, std::uint64_t pairs, PairList& out) {
@@ -144,7 +147,7 @@ void each_pair(const SlabDeal& deal, const SlabLists& lists, const Stretch& stre
     const std::uint32_t* const members = deal.members(stretch.slab).data();
     for (std::size_t i = stretch.first; i < stretch.end; ++i) {
         const std::uint32_t a = members[lists[stretch.slab][i].a], b = members[lists[stretch.slab][i].b];
-        if (stretch.slab == 0 || !belongs_before(deal, stretch.slab, a, b)) take(Pair{a, b});
+        if (deal.owner(a, b) == stretch.slab) take(Pair{a, b});
     }
 }
 

@@ -14,11 +14,6 @@ namespace clinch::detail {
 /// What was found in slab s: pairs of places in deal.members(s), a < b.
 using SlabLists = std::vector<View<const Pair>>;
 
-/// Whether the pair, of members of slab s, belongs to a slab before it, where it is found too.
-inline bool belongs_before(const SlabDeal& deal, std::size_t s, std::uint32_t a, std::uint32_t b) {
-    return deal.span(a).first < s && deal.span(b).first < s;
-}
-
 /// Appends the pairs of all slabs to `out` (which keeps them), each once, as numbers of boxes; ascending if `sorted`,
 /// as the lists then must be. On the host's threads: two reads of the lists, one write of the result.
 void merge_slabs(const SlabDeal& deal, const SlabLists& lists, bool sorted, PairList& out);

@@ -16,12 +16,13 @@ const T* column_of(const T* column, const std::vector<std::uint32_t>& members, s
     return to.data();
 }
 
-// Members of slab s that reach into one before, too: pairs of two of them belong there.
-std::vector<std::uint32_t> begun_before(const SlabDeal& deal, std::size_t s) {
-    std::vector<std::uint32_t> members;
+// Boxes that reach into slab s, only into it and slabs behind it or not, by `take`.
+template <class Take>
+std::vector<std::uint32_t> boxes_in(const SlabDeal& deal, std::size_t s, const Take& take) {
+    std::vector<std::uint32_t> boxes;
     for (const std::uint32_t box : deal.members(s))
-        if (deal.span(box).first < s) members.push_back(box);
-    return members;
+        if (take(deal.span(box))) boxes.push_back(box);
+    return boxes;
 }
 
 }  // namespace
@@ -63,6 +64,18 @@ void SlabWorker::search(const SlabTask& task, const std::vector<std::uint32_t>& 
     counts_.invalid_boxes = counts_.invalid_boxes || members.size() == 1;
 }
 
+// Pairs of two boxes that begin before the slab are counted there, too.
+void SlabWorker::count(const SlabTask& task, std::size_t s) {
+    search(task, boxes_in(task.deal, s, [s](SlabSpan span) { return span.first <= s && s <= span.last; }));
+    found_ = counted_ = pairs_.size();
+    if (s == 0) return;
+    const FindCounts counts = counts_;
+    pairs_.restart();
+    search(task, boxes_in(task.deal, s, [s](SlabSpan span) { return span.first < s && s <= span.last; }));
+    counted_ -= pairs_.size();
+    counts_ = counts;
+}
+
 void SlabWorker::find(const SlabTask& task, std::size_t s) {
     const Stopwatch watch;
     Device& device = context_.open(device_);
@@ -70,14 +83,11 @@ void SlabWorker::find(const SlabTask& task, std::size_t s) {
     pairs_.clear();
     counts_ = {};
     if (task.counts_only) pairs_.count_only();
-    search(task, task.deal.members(s));
-    found_ = counted_ = pairs_.size();
-    if (task.counts_only && s > 0) {
-        const FindCounts counts = counts_;
-        pairs_.restart();
-        search(task, begun_before(task.deal, s));
-        counted_ -= pairs_.size();
-        counts_ = counts;
+    if (task.counts_only) {
+        count(task, s);
+    } else {
+        search(task, task.deal.members(s));
+        found_ = pairs_.size();
     }
     seconds_ = (watch.ms() - (device.report().build_ms - built_before)) / 1e3;
 }

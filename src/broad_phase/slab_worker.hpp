@@ -50,6 +50,7 @@ public:
     void forget_pairs() { pairs_.clear(); }
 
 private:
+    void count(const SlabTask& task, std::size_t s);
     void search(const SlabTask& task, const std::vector<std::uint32_t>& members);
     const Buffer& send(Device& device, View<const Aabb> boxes, const std::vector<std::uint32_t>& members);
     FilterInput filters_of(const FilterInput& filters, const std::vector<std::uint32_t>& members);

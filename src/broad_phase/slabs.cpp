@@ -9,6 +9,7 @@ namespace clinch::detail {
 namespace {
 
 constexpr std::size_t sample_size = 4096, boxes_a_block = std::size_t{1} << 15;
+constexpr double slack_widths = 0.25;  // of boxes: bodies that move much farther in a step are few
 
 std::vector<Aabb> sample_of(View<const Aabb> boxes) {
     std::vector<Aabb> sample;
@@ -40,9 +41,14 @@ Slabs slabs_across(int axis, const std::vector<Aabb>& sample, const std::vector<
         slabs.cuts.push_back(place >= static_cast<double>(begins.size()) ? std::nextafter(begins.back(), HUGE_VALF)
                                                                          : begins[static_cast<std::size_t>(place)]);
     }
+    double width = 0.0;
+    for (const Aabb& box : sample)
+        width += (static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis])) /
+                 static_cast<double>(sample.size());
+    slabs.slack = static_cast<float>(slack_widths * width);
     std::size_t copies = 0;
     for (const Aabb& box : sample) {
-        const SlabSpan span = slabs.span_of(box);
+        const SlabSpan span = slabs.members_of(box);
         copies += static_cast<std::size_t>(span.last - span.first);
     }
     slabs.copies = static_cast<double>(copies) / static_cast<double>(sample.size());
@@ -51,11 +57,11 @@ Slabs slabs_across(int axis, const std::vector<Aabb>& sample, const std::vector<
 
 }  // namespace
 
-SlabSpan Slabs::span_of(const Aabb& box) const noexcept {
+SlabSpan Slabs::span_of(float min, float max) const noexcept {
     SlabSpan span{0, 0};
     for (const float cut : cuts) {
-        span.first = static_cast<std::uint8_t>(span.first + (box.min[axis] >= cut ? 1 : 0));
-        span.last = static_cast<std::uint8_t>(span.last + (box.max[axis] >= cut ? 1 : 0));
+        span.first = static_cast<std::uint8_t>(span.first + (min >= cut ? 1 : 0));
+        span.last = static_cast<std::uint8_t>(span.last + (max >= cut ? 1 : 0));
     }
     span.last = std::max(span.first, span.last);
     return span;
@@ -75,19 +81,46 @@ Slabs choose_slabs(View<const Aabb> boxes, const std::vector<double>& fractions)
     return best;
 }
 
+namespace {
+
+// Calls what(i) for each box of a block.
+template <class What>
+void each_of(std::size_t block, std::size_t boxes, const What& what) {
+    for (std::size_t i = block * boxes_a_block, end = std::min(boxes, i + boxes_a_block); i < end; ++i) what(i);
+}
+
+}  // namespace
+
+bool SlabDeal::keep(View<const Aabb> boxes) {
+    const std::size_t n = boxes.size(), blocks = (n + boxes_a_block - 1) / boxes_a_block;
+    if (n != spans_.size() || members_.size() != slabs_.count()) return false;
+    std::vector<std::uint8_t> strays(blocks, 0);
+    parallel_for(blocks, blocks > 1, [&](std::size_t block) {
+        unsigned stray = 0;
+        each_of(block, n, [&](std::size_t i) {
+            const SlabSpan span = spans_[i] = slabs_.span_of(boxes[i]), in = member_of_[i];
+            stray |= static_cast<unsigned>(span.first < in.first) | static_cast<unsigned>(span.last > in.last);
+        });
+        strays[block] = static_cast<std::uint8_t>(stray);
+    });
+    return std::find(strays.begin(), strays.end(), 1) == strays.end();
+}
+
 void SlabDeal::deal(View<const Aabb> boxes, const Slabs& slabs) {
     const std::size_t n = boxes.size(), count = slabs.count(), blocks = (n + boxes_a_block - 1) / boxes_a_block;
+    slabs_ = slabs;
     spans_.resize(n);
+    member_of_.resize(n);
     members_.resize(count);
     places_.assign(blocks * count, 0);
-    const auto each_of = [&](std::size_t block, const auto& what) {
-        for (std::size_t i = block * boxes_a_block, end = std::min(n, i + boxes_a_block); i < end; ++i) what(i);
-    };
     parallel_for(blocks, blocks > 1, [&](std::size_t block) {
         std::vector<std::size_t> there(count, 0);
-        each_of(block, [&](std::size_t i) {
-            const SlabSpan span = spans_[i] = slabs.span_of(boxes[i]);
-            for (std::size_t s = span.first; s <= span.last; ++s) ++there[s];
+        each_of(block, n, [&](std::size_t i) {
+            spans_[i] = slabs.span_of(boxes[i]);
+            SlabSpan& in = member_of_[i] = slabs.members_of(boxes[i]);
+            // Rounding, and what is no box, may have it the other way.
+            in = {std::min(in.first, spans_[i].first), std::max(in.last, spans_[i].last)};
+            for (std::size_t s = in.first; s <= in.last; ++s) ++there[s];
         });
         std::copy(there.begin(), there.end(), places_.begin() + static_cast<std::ptrdiff_t>(block * count));
     });
@@ -103,14 +136,16 @@ void SlabDeal::deal(View<const Aabb> boxes, const Slabs& slabs) {
     parallel_for(blocks, blocks > 1, [&](std::size_t block) {
         std::vector<std::uint32_t*> at(count);
         for (std::size_t s = 0; s < count; ++s) at[s] = members_[s].data() + places_[block * count + s];
-        each_of(block, [&](std::size_t i) {
-            for (std::size_t s = spans_[i].first; s <= spans_[i].last; ++s) *at[s]++ = static_cast<std::uint32_t>(i);
+        each_of(block, n, [&](std::size_t i) {
+            for (std::size_t s = member_of_[i].first; s <= member_of_[i].last; ++s)
+                *at[s]++ = static_cast<std::uint32_t>(i);
         });
     });
 }
 
 std::size_t SlabDeal::host_bytes() const noexcept {
-    std::size_t bytes = spans_.capacity() * sizeof(SlabSpan) + places_.capacity() * sizeof(std::size_t);
+    std::size_t bytes =
+        (spans_.capacity() + member_of_.capacity()) * sizeof(SlabSpan) + places_.capacity() * sizeof(std::size_t);
     for (const auto& members : members_) bytes += members.capacity() * sizeof(std::uint32_t);
     return bytes;
 }

@@ -1,6 +1,7 @@
 // Space cut across one axis, so that each of several devices finds the pairs of one part [thesis 5.2].
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -22,10 +23,18 @@ struct Slabs {
     static constexpr std::size_t most = 255;
     int axis = 0;
     std::vector<float> cuts;  ///< ascending
-    double copies = 0.0;      ///< boxes that slabs have beyond one each, a box, as a sample has it
+    float slack = 0.0f;       ///< boxes this near to a slab are its members, too: they may be in it next time
+    double copies = 0.0;      ///< members that slabs have beyond one each, a box, as a sample has it
     std::size_t count() const noexcept { return cuts.size() + 1; }
     /// Of a box that is no box on the axis: the slab where it is met, and found to be none.
-    SlabSpan span_of(const Aabb& box) const noexcept;
+    SlabSpan span_of(const Aabb& box) const noexcept { return span_of(box.min[axis], box.max[axis]); }
+    /// Those that it is made a member of.
+    SlabSpan members_of(const Aabb& box) const noexcept {
+        return span_of(box.min[axis] - slack, box.max[axis] + slack);
+    }
+
+private:
+    SlabSpan span_of(float min, float max) const noexcept;
 };
 
 /// Slabs in which boxes begin in proportion to `fractions` (which add up to 1; at most Slabs::most of them), across the
@@ -33,20 +42,32 @@ struct Slabs {
 /// millisecond.
 Slabs choose_slabs(View<const Aabb> boxes, const std::vector<double>& fractions);
 
-/// The boxes of each slab. Keeps its memory between calls.
+/// The boxes of each slab. Members stay the same from call to call while they can, so that what an algorithm has made
+/// of them can be used again.
 class SlabDeal {
 public:
     /// Two passes over the boxes on the host's threads.
     void deal(View<const Aabb> boxes, const Slabs& slabs);
-    /// Numbers of the boxes that reach into slab s, ascending.
+    /// For boxes that moved since: keeps cuts and members, in one pass. False if it cannot: there are more or fewer
+    /// boxes, or one reaches into a slab that it is no member of.
+    bool keep(View<const Aabb> boxes);
+    const Slabs& slabs() const noexcept { return slabs_; }
+    /// Numbers of the boxes of slab s, ascending: all that reach into it, and some near to it.
     const std::vector<std::uint32_t>& members(std::size_t s) const noexcept { return members_[s]; }
     SlabSpan span(std::uint32_t box) const noexcept { return spans_[box]; }
+    /// The slabs that the box is a member of.
+    SlabSpan member_of(std::uint32_t box) const noexcept { return member_of_[box]; }
+    /// The slab that a pair belongs to.
+    std::size_t owner(std::uint32_t a, std::uint32_t b) const noexcept {
+        return std::max(spans_[a].first, spans_[b].first);
+    }
     std::size_t boxes() const noexcept { return spans_.size(); }
-    std::size_t slabs() const noexcept { return members_.size(); }
+    std::size_t count() const noexcept { return members_.size(); }
     std::size_t host_bytes() const noexcept;
 
 private:
-    std::vector<SlabSpan> spans_;
+    Slabs slabs_;
+    std::vector<SlabSpan> spans_, member_of_;
     std::vector<std::vector<std::uint32_t>> members_;
     std::vector<std::size_t> places_;  // of each block's members in each slab
 };

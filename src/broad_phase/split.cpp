@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
@@ -30,6 +31,14 @@ std::vector<double> guesses_of(const Context::Impl& context) {
     std::vector<double> guesses;
     for (const DeviceInfo& info : context.infos) guesses.push_back(guess_of(info));
     return guesses;
+}
+
+// What was measured wavers; a new cut costs what the algorithms keep of the old slabs.
+bool near(const std::vector<double>& p, const std::vector<double>& q) {
+    constexpr double part = 0.04;
+    for (std::size_t i = 0; i < p.size(); ++i)
+        if (std::fabs(p[i] - q[i]) > part * std::max(p[i], q[i])) return false;
+    return p.size() == q.size();
 }
 
 bool is_limit(const std::exception_ptr& thrown) {
@@ -106,14 +115,24 @@ void BroadSplit::prepare(const std::vector<std::size_t>& crew) {
     }
 }
 
+// Gives each of the crew a slab: that of the last call if it still has the right share. False if it does not pay.
+bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& crew) {
+    const std::vector<double> fractions = fractions_of(crew);
+    if (crew == dealt_to_ && near(fractions, dealt_) && deal_.keep(boxes)) return true;
+    const Slabs slabs = choose_slabs(boxes, fractions);
+    if (forced_.empty() && static_cast<double>(crew.size()) < least_speed_up * (1.0 + slabs.copies)) return false;
+    deal_.deal(boxes, slabs);
+    dealt_to_ = crew;
+    dealt_ = fractions;
+    return true;
+}
+
 bool BroadSplit::find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
                       FindCounts& counts) {
     warnings_.clear();
     const std::vector<std::size_t> crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
-    const Slabs slabs = choose_slabs(on_host, fractions_of(crew));
-    if (forced_.empty() && static_cast<double>(crew.size()) < least_speed_up * (1.0 + slabs.copies)) return false;
-    deal_.deal(on_host, slabs);
+    if (!deal(on_host, crew)) return false;
     prepare(crew);
     const SlabTask task{row, on_host, filters, deal_, pairs.counts_only()};
     run(task);

@@ -46,6 +46,7 @@ public:
 private:
     std::vector<std::size_t> crew_for(const AlgorithmRow& row, std::uint64_t count) const;
     std::vector<double> fractions_of(const std::vector<std::size_t>& crew) const;
+    bool deal(View<const Aabb> boxes, const std::vector<std::size_t>& crew);
     void prepare(const std::vector<std::size_t>& crew);
     void run(const SlabTask& task);
     std::vector<std::exception_ptr> run_once(const SlabTask& task, const std::vector<std::size_t>& which);
@@ -60,6 +61,8 @@ private:
     Shares shares_;  // of the devices of the context
     std::vector<double> forced_;
     SlabDeal deal_;
+    std::vector<std::size_t> dealt_to_;                 // who has which slab of it
+    std::vector<double> dealt_;                         // the shares it was made for
     std::vector<std::unique_ptr<SlabWorker>> workers_;  // of each slab
     std::vector<std::string> warnings_;
 };

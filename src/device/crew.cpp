@@ -1,8 +1,5 @@
 #include "src/device/crew.hpp"
 
-#include <omp.h>
-
-#include <algorithm>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -27,26 +24,12 @@ private:
     std::vector<std::thread> threads_;
 };
 
-// The number of OpenMP threads of the calling thread, for as long as it lives.
-class HostThreads {
-public:
-    explicit HostThreads(int count) : before_(omp_get_max_threads()) { omp_set_num_threads(count); }
-    ~HostThreads() { omp_set_num_threads(before_); }
-    HostThreads(const HostThreads&) = delete;
-    HostThreads& operator=(const HostThreads&) = delete;
-
-private:
-    int before_;
-};
-
 }  // namespace
 
 std::vector<std::exception_ptr> run_crew(std::size_t count, const std::function<void(std::size_t)>& work) {
     std::vector<std::exception_ptr> thrown(count);
     if (count == 0) return thrown;
-    const int host_threads = std::max(1, omp_get_max_threads() / static_cast<int>(count));
     const auto run = [&](std::size_t k) {
-        const HostThreads share(host_threads);
         try {
             work(k);
         } catch (...) {

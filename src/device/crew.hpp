@@ -10,8 +10,8 @@
 namespace clinch::detail {
 
 /// Runs `work(k)` for each k below `count` at once, each in a host thread of its own (k = 0 in the caller's), and waits
-/// for all. Threads are sure to run side by side, so that they may wait for each other; the OpenMP threads of the host
-/// are shared out among them. Returns what each threw, null where nothing was.
+/// for all. Threads are sure to run side by side, so that they may wait for each other, as those of a parallel loop are
+/// not. Returns what each threw, null where nothing was.
 std::vector<std::exception_ptr> run_crew(std::size_t count, const std::function<void(std::size_t)>& work);
 
 /// Whether a device gave up, so that another one may do its work: an OpenCL call failed, memory was short there, or a

@@ -258,8 +258,10 @@ Buffer Device::allocate(std::size_t bytes, const char* what) {
 
 void Device::reserve(Buffer& buffer, std::size_t bytes, const char* what) {
     if (buffer.bytes() >= bytes && buffer.handle() != nullptr) return;
+    // Fresh memory costs more than what is done with it: what grew once is given room to grow a little again.
+    const std::size_t room = buffer.handle() != nullptr ? bytes / 8 : 0;
     buffer = Buffer();  // first, so that old and new need not fit side by side
-    buffer = allocate(bytes, what);
+    buffer = allocate(bytes + room <= impl_->info.max_allocation ? bytes + room : bytes, what);
 }
 
 void Device::write(const Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset) {

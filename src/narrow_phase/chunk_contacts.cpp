@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "src/primitives/host_parallel.hpp"
 #include "src/scene/scene_impl.hpp"
 
 namespace clinch::detail {
@@ -150,25 +151,18 @@ std::size_t parts_of(std::size_t pairs) {
 template <class Body>
 void for_parts(std::size_t pairs, const Body& body) {
     const std::size_t parts = parts_of(pairs), per_part = parts == 0 ? 0 : (pairs - 1) / parts + 1;
-    const auto last = static_cast<std::ptrdiff_t>(parts);
-#pragma omp parallel for schedule(static) if (parts > 1)
-    for (std::ptrdiff_t p = 0; p < last; ++p) {
-        const auto part = static_cast<std::size_t>(p);
-        body(part, part * per_part, std::min(pairs, (part + 1) * per_part));
-    }
+    parallel_for(parts, parts > 1,
+                 [&](std::size_t part) { body(part, part * per_part, std::min(pairs, (part + 1) * per_part)); });
 }
 
 template <class ContactAt>
 void write_each(const Scene& scene, std::size_t count, const ContactAt& contact_at, Contact* to) {
     const std::vector<Vec3>& position = scene.impl().position;
-    const auto end = static_cast<std::ptrdiff_t>(count);
-#pragma omp parallel for schedule(static) if (count >= rows_worth_threads)
-    for (std::ptrdiff_t i = 0; i < end; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        Contact c = contact_at(at);
+    parallel_rows(count, rows_worth_threads, [&](std::size_t i) {
+        Contact c = contact_at(i);
         place(position[c.a], c);
-        to[at] = c;
-    }
+        to[i] = c;
+    });
 }
 
 template <class ContactAt, class Points>
@@ -176,13 +170,10 @@ void write_points(const Scene& scene, const std::vector<std::size_t>& firsts, co
                   const Points& points, Contact* to) {
     const std::vector<Vec3>& position = scene.impl().position;
     const std::size_t count = firsts.size() - 1;
-    const auto end = static_cast<std::ptrdiff_t>(count);
-#pragma omp parallel for schedule(static) if (count >= rows_worth_threads)
-    for (std::ptrdiff_t i = 0; i < end; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        const Contact whole = contact_at(at);
-        put_points(whole, points_of(points, at), position[whole.a], to + firsts[at]);
-    }
+    parallel_rows(count, rows_worth_threads, [&](std::size_t i) {
+        const Contact whole = contact_at(i);
+        put_points(whole, points_of(points, i), position[whole.a], to + firsts[i]);
+    });
 }
 
 }  // namespace

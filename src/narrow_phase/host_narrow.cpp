@@ -1,5 +1,6 @@
 #include "src/narrow_phase/host_narrow.hpp"
 
+#include "src/primitives/host_parallel.hpp"
 #include "src/scene/scene_impl.hpp"
 
 namespace clinch::detail {
@@ -67,12 +68,8 @@ const MatrixRow* row_of(const Scene& scene, const NarrowShapes& shapes, const Pa
 std::vector<HostAnswer> touch_on_host(const Scene& scene, const NarrowShapes& shapes, View<const Pair> pairs,
                                       const RowTolerances& tolerances) {
     std::vector<HostAnswer> answers(pairs.size());
-    const auto count = static_cast<std::ptrdiff_t>(pairs.size());
-#pragma omp parallel for schedule(dynamic, 64) if (pairs.size() >= pairs_worth_threads)
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        answers[at] = touch_pair(scene, shapes, pairs[at], tolerances);
-    }
+    parallel_blocks(pairs.size(), pairs_worth_threads,
+                    [&](std::size_t i) { answers[i] = touch_pair(scene, shapes, pairs[i], tolerances); });
     return answers;
 }
 

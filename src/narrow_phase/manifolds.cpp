@@ -8,6 +8,7 @@
 #include "src/narrow_phase/host_narrow.hpp"
 #include "src/narrow_phase/matrix.hpp"
 #include "src/narrow_phase/routines.hpp"
+#include "src/primitives/host_parallel.hpp"
 #include "src/scene/scene_impl.hpp"
 
 namespace clinch::detail {
@@ -188,12 +189,8 @@ std::vector<FewPoints> manifolds_on_host(const Scene& scene, const NarrowShapes&
     for (std::size_t i = 0; i < answers.size(); ++i)
         if (answers[i].hit) hits.push_back(i);
     std::vector<FewPoints> found(hits.size());
-    const auto end = static_cast<std::ptrdiff_t>(hits.size());
-#pragma omp parallel for schedule(dynamic, 64) if (hits.size() >= contacts_worth_threads)
-    for (std::ptrdiff_t c = 0; c < end; ++c) {
-        const auto i = static_cast<std::size_t>(c);
-        found[i] = points_of(scene, shapes, answers[hits[i]], wanted);
-    }
+    parallel_blocks(hits.size(), contacts_worth_threads,
+                    [&](std::size_t i) { found[i] = points_of(scene, shapes, answers[hits[i]], wanted); });
     return found;
 }
 

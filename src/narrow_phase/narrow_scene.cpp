@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "src/primitives/host_parallel.hpp"
 #include "src/scene/convex_hull.hpp"
 #include "src/scene/round_outward.hpp"
 #include "src/scene/scene_impl.hpp"
@@ -132,12 +133,8 @@ void NarrowScene::send_frames(const Scene& scene, Frames<Frame>& frames) {
     const View<const std::uint32_t> rows = frames.tracker.changed(scene, grown);
     if (rows.empty()) return;
     frames.staging.resize(rows.size());
-    const auto count = static_cast<std::ptrdiff_t>(rows.size());
-#pragma omp parallel for schedule(static) if (rows.size() >= rows_worth_threads)
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-        const auto at = static_cast<std::size_t>(i);
-        round_frame(frame_of(scene, rows[at]), frames.staging[at]);
-    }
+    parallel_rows(rows.size(), rows_worth_threads,
+                  [&](std::size_t i) { round_frame(frame_of(scene, rows[i]), frames.staging[i]); });
     if (rows.size() == rows_there) {
         device_.write(frames.buffer, frames.staging.data(), rows.size() * sizeof(Frame));
     } else {

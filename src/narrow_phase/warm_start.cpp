@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "src/narrow_phase/warm_start_impl.hpp"
+#include "src/primitives/host_parallel.hpp"
 
 namespace clinch {
 namespace {
@@ -49,21 +50,20 @@ std::size_t WarmStart::Impl::take(View<const Pair> now) {
 }
 
 std::size_t WarmStart::Impl::restore(std::size_t first, std::size_t count) {
-    std::size_t known = 0;
-    const auto parts = static_cast<std::ptrdiff_t>((count + pairs_a_part - 1) / pairs_a_part);
-#pragma omp parallel for schedule(static) reduction(+ : known) if (parts > 1)
-    for (std::ptrdiff_t p = 0; p < parts; ++p) {
-        const std::size_t begin = first + static_cast<std::size_t>(p) * pairs_a_part;
+    const std::size_t parts = (count + pairs_a_part - 1) / pairs_a_part;
+    std::vector<std::size_t> known(parts, 0);
+    detail::parallel_for(parts, parts > 1, [&](std::size_t p) {
+        const std::size_t begin = first + p * pairs_a_part;
         std::size_t at = 0;
         for (std::size_t i = begin; i < std::min(first + count, begin + pairs_a_part); ++i) {
             if (i == begin || before(pairs[i], pairs[i - 1])) at = place_of(pairs[i]);
             while (at < old_pairs_.size() && before(old_pairs_[old_number(at)], pairs[i])) ++at;
             const bool there = at < old_pairs_.size() && !before(pairs[i], old_pairs_[old_number(at)]);
             corners[i] = there ? old_corners_[old_number(at)] : Corners{{none, none, none, none}};
-            known += corners[i].any() ? 1U : 0U;
+            known[p] += corners[i].any() ? 1U : 0U;
         }
-    }
-    return known;
+    });
+    return std::accumulate(known.begin(), known.end(), std::size_t{0});
 }
 
 void WarmStart::Impl::clear() noexcept {

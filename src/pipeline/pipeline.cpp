@@ -186,6 +186,7 @@ void StepResult::Impl::find_contacts(const Scene& scene) {
     contacts = narrow->find(scene, pairs, starts_warm ? &kept : nullptr);
     narrow_report = narrow->report();
     report.contacts = contacts.size();
+    report.warnings.insert(report.warnings.end(), narrow_report.warnings.begin(), narrow_report.warnings.end());
     report.tolerance_missed = narrow_report.tolerance_missed;
     report.ms.narrow = narrow_report.ms.total;
     report.peak_device_bytes = std::max(report.peak_device_bytes, narrow_report.peak_device_bytes);

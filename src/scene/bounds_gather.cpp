@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <numeric>
 
+#include "src/primitives/host_parallel.hpp"
 #include "src/scene/bounds.hpp"
 #include "src/scene/round_outward.hpp"
 #include "src/scene/scene_impl.hpp"
@@ -69,9 +70,7 @@ BodyRecord record_of(const Scene::Impl& s, std::uint32_t row) {
 
 void gather_records(const Scene& scene, View<const std::uint32_t> rows, BodyRecord* out) {
     const Scene::Impl& s = scene.impl();
-    const auto count = static_cast<std::ptrdiff_t>(rows.size());
-#pragma omp parallel for schedule(static) if (rows.size() >= rows_worth_threads)
-    for (std::ptrdiff_t i = 0; i < count; ++i) out[i] = record_of(s, rows[static_cast<std::size_t>(i)]);
+    parallel_rows(rows.size(), rows_worth_threads, [&](std::size_t i) { out[i] = record_of(s, rows[i]); });
 }
 
 bool RowTracker::knows(const Scene& scene) const {

@@ -1,6 +1,7 @@
 #include <cstddef>
 #include <cstring>
 
+#include "src/primitives/host_parallel.hpp"
 #include "src/scene/bounds.hpp"
 #include "src/scene/scene_impl.hpp"
 
@@ -15,14 +16,12 @@ std::size_t HostBounds::update(const Scene& scene) {
     records_.resize(rows.size());
     gather_records(scene, rows, records_.data());
     const ShapeStore& shapes = scene.impl().shapes;
-    const auto count = static_cast<std::ptrdiff_t>(rows.size());
-#pragma omp parallel for schedule(static) if (count >= 4096)
-    for (std::ptrdiff_t i = 0; i < count; ++i) {
-        const BodyRecord& record = records_[static_cast<std::size_t>(i)];
+    parallel_rows(rows.size(), 4096, [&](std::size_t i) {
+        const BodyRecord& record = records_[i];
         BoxRecord box;
         clinch_bounds(&record, shapes.records().data(), shapes.vertices().data(), &box);
         std::memcpy(&boxes_[record.row], &box, sizeof box);
-    }
+    });
     tracker_.seen(scene);
     return rows.size();
 }

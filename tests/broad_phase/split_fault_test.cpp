@@ -184,7 +184,7 @@ TEST_CASE("a step of a pipeline goes to other devices when one fails", "[device]
     scene.add_body({scene.add_shape(Plane{{0, 0, 1}, 0.3}), Pose{}});
     PipelineOptions options;
     options.broad_phase.algorithm = "brute";
-    options.contacts = false;
+    options.contacts = true;
     options.narrow_phase.contacts_per_pair = 1;
     Context alone = Context::host_only();
     PipelineOptions on_host = options;

@@ -1,8 +1,6 @@
 // Devices side by side: threads, what they throw, and devices that are taken out of use.
 #include "src/device/crew.hpp"
 
-#include <omp.h>
-
 #include <catch2/catch.hpp>
 #include <condition_variable>
 #include <mutex>
@@ -47,14 +45,6 @@ TEST_CASE("what one of a crew throws is told apart, and the others end their wor
     CHECK_FALSE(is_device_fault(std::make_exception_ptr(Error(ErrorCode::LimitExceeded, "too many"))));
     CHECK(detail::message_of(thrown[0]) == "gone");
     CHECK(detail::message_of(thrown[2]) == "asked wrongly");
-}
-
-TEST_CASE("a crew shares out the OpenMP threads of the host and gives them back", "[host]") {
-    const int before = omp_get_max_threads();
-    std::vector<int> threads(2 * static_cast<std::size_t>(before));
-    run_crew(threads.size(), [&](std::size_t k) { threads[k] = omp_get_max_threads(); });
-    for (const int count : threads) CHECK(count == 1);
-    CHECK(omp_get_max_threads() == before);
 }
 
 TEST_CASE("a device that is taken out of use is no more chosen; the last one stays", "[host]") {

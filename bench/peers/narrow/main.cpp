@@ -1,6 +1,7 @@
 // clinch_narrow_peers: times clinch's narrow phase and other libraries on the same pairs in the same poses, judges the
 // answers of all, prints tables and writes JSON.
 #include <omp.h>
+#include <tbb/task_arena.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -172,7 +173,7 @@ int main(int argc, char** argv) {
         Options options;
         add_options(app, options);
         CLI11_PARSE(app, argc, argv);
-        return run(options);
+        return tbb::task_arena(1).execute([&] { return run(options); });
     } catch (const std::exception& error) {
         std::fprintf(stderr, "clinch_narrow_peers: %s\n", error.what());
         return 1;

@@ -1,6 +1,7 @@
 #include "bench/peers/narrow/worker.hpp"
 
 #include <omp.h>
+#include <tbb/task_arena.h>
 #include <sched.h>
 
 #include <algorithm>
@@ -16,13 +17,15 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Threads of loops, of oneTBB and of OpenMP.
+int threads_of(bool one) {
+    return one ? 1 : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+}
+
 /// Before the first word to OpenCL. PoCL makes a thread for every core of the machine unless told otherwise.
 void use_cores(bool one, unsigned core) {
-    if (!one) {
-        omp_set_num_threads(static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
-        return;
-    }
-    omp_set_num_threads(1);
+    omp_set_num_threads(threads_of(one));
+    if (!one) return;
     setenv("POCL_MAX_PTHREAD_COUNT", "1", 1);
 #ifdef __linux__
     cpu_set_t set;
@@ -104,10 +107,12 @@ private:
 
 Worker::Worker(const PeerRow& row, const Batch& batch, Question question, unsigned core)
     : process_([&](int commands, int answers) {
-          std::unique_ptr<Runner> runner;
-          answer_all<Command, Turn>(commands, answers, [&](const Command& command) {
-              if (!runner) runner = std::make_unique<Runner>(row, batch, question, core);
-              return command.job == 'f' ? runner->first() : runner->more(command.enough_ms);
+          tbb::task_arena(threads_of(row.one_core)).execute([&] {
+              std::unique_ptr<Runner> runner;
+              answer_all<Command, Turn>(commands, answers, [&](const Command& command) {
+                  if (!runner) runner = std::make_unique<Runner>(row, batch, question, core);
+                  return command.job == 'f' ? runner->first() : runner->more(command.enough_ms);
+              });
           });
       }) {}
 
