@@ -22,7 +22,8 @@ struct ContextOptions {
     /// Keep compiled kernels on disk between runs.
     bool use_kernel_cache = true;
     /// Called with one line for each thing worth knowing that is no error (a damaged cache entry,
-    /// a quirk). May be called from the thread that uses the Context. The library itself prints nothing.
+    /// a quirk, a device that failed). Called during calls of the library, on whatever thread works on a device, but
+    /// never twice at once. The library itself prints nothing.
     std::function<void(const std::string&)> log;
 };
 

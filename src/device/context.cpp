@@ -1,5 +1,7 @@
 #include "clinch/context.hpp"
 
+#include <memory>
+#include <mutex>
 #include <tuple>
 #include <utility>
 
@@ -56,8 +58,22 @@ std::vector<std::size_t> Context::Impl::crew() const {
     return crew;
 }
 
+namespace {
+
+// Devices work on threads of their own: what they have to say is said one after the other.
+ContextOptions with_orderly_log(ContextOptions options) {
+    if (!options.log) return options;
+    options.log = [log = std::move(options.log), mutex = std::make_shared<std::mutex>()](const std::string& line) {
+        const std::lock_guard<std::mutex> lock(*mutex);
+        log(line);
+    };
+    return options;
+}
+
+}  // namespace
+
 Context::Context(const ContextOptions& options) : impl_(std::make_unique<Impl>()) {
-    impl_->options = options;
+    impl_->options = with_orderly_log(options);
     for (detail::FoundDevice& found : detail::choose_devices(options.devices)) {
         impl_->infos.push_back(std::move(found.info));
         impl_->ids.push_back(found.id);
@@ -112,11 +128,11 @@ Context make_context(cl_context context, cl_device_id device, cl_command_queue q
     if ((properties & CL_QUEUE_OUT_OF_ORDER_EXEC_MODE_ENABLE) != 0)
         throw Error(ErrorCode::InvalidArgument, "the command queue runs out of order; an in-order queue is needed");
     auto impl = std::make_unique<Context::Impl>();
-    impl->options = options;
+    impl->options = with_orderly_log(options);
     impl->infos.push_back(detail::checked("describing the caller's device", [&] { return detail::describe(device); }));
     impl->ids.push_back(device);
     impl->id_owners.emplace_back();
-    impl->devices.push_back(std::make_unique<detail::Device>(impl->infos[0], device, context, queue, options));
+    impl->devices.push_back(std::make_unique<detail::Device>(impl->infos[0], device, context, queue, impl->options));
     return Context(std::move(impl));
 }
 

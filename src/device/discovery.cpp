@@ -119,6 +119,15 @@ void divide(const FoundDevice& whole, std::uint32_t parts, std::vector<FoundDevi
                                                     whole.info.name + "') of " +
                                                     std::to_string(whole.info.compute_units) + " compute units into " +
                                                     std::to_string(parts) + " devices");
+    // Some drivers crash when asked for what they say they do not have.
+    const auto most = checked("clGetDeviceInfo on '" + whole.info.name + "'", [&] {
+        return compute::device(whole.id).get_info<cl_uint>(CL_DEVICE_PARTITION_MAX_SUB_DEVICES);
+    });
+    if (most < parts)
+        throw Error(ErrorCode::InvalidArgument, "cannot divide device " + std::to_string(whole.info.index) + " ('" +
+                                                    whole.info.name + "'): its driver offers " +
+                                                    (most == 0 ? "no" : "at most " + std::to_string(most)) +
+                                                    " sub-devices");
     const auto owner =
         std::make_shared<std::vector<compute::device>>(checked("clCreateSubDevices on '" + whole.info.name + "'", [&] {
             return compute::device(whole.id).partition_by_counts(std::vector<std::size_t>(parts, units));

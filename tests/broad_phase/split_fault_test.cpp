@@ -170,7 +170,7 @@ TEST_CASE("a search on one device goes to the next when it fails", "[device]") {
     }
 }
 
-TEST_CASE("a step of a pipeline goes to other devices when one fails", "[device]") {
+TEST_CASE("a step of a pipeline goes to other devices when one fails", "[device][together]") {
     Failing failing;
     failing.context.impl().least_boxes_a_device = 1000;
     Scene scene;

@@ -52,7 +52,7 @@ private:
 
 }  // namespace
 
-TEST_CASE("200 random scenes on 2, 3 and 4 devices: the oracle's bytes with any shares", "[device]") {
+TEST_CASE("200 random scenes on 2, 3 and 4 devices: the oracle's bytes with any shares", "[device][together]") {
     const std::uint64_t seed = 20261122;
     INFO("seed " << seed);
     test::Random random(seed);
@@ -91,7 +91,7 @@ TEST_CASE("200 random scenes on 2, 3 and 4 devices: the oracle's bytes with any 
     }
 }
 
-TEST_CASE("a split in any order has the same pairs, and a stream goes to one device", "[device]") {
+TEST_CASE("a split in any order has the same pairs, and a stream goes to one device", "[device][together]") {
     Context context = test::several(3);
     const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 4000, 5);
     const std::vector<Pair> expected = test::pairs_by_hand(boxes);
