@@ -24,6 +24,7 @@
 //   bvh_keys    boxes (rows) -> key: class of size, then place of the centre on the curve
 //   bvh_crowded sorted keys -> how many blocks lie in one cell, as where finer cells are needed
 //   bvh_leaves  boxes, order (payload of the sorted keys) -> blocks of boxes, and level 1
+//   bvh_names   order -> names of the boxes in it, for boxes that have others than their numbers
 //   bvh_level   one level from the one below
 //               both: -> measures (one a work-item): the size of nodes, and whether there is a box that is no box
 //   bvh_search  tree, order, the tree to look into (the same or another), its order -> pairs
@@ -140,6 +141,12 @@ kernel void bvh_compare(global const ulong* restrict boxes, ulong first, global 
         last[2] = z;
     }
     changed[item] = differs;
+}
+
+kernel void bvh_names(global const uint* restrict order, global const uint* restrict names, uint n,
+                      global uint* restrict out) {
+    uint i = get_global_id(0);
+    if (i < n) out[i] = names[order[i]];
 }
 
 // Work-item i owns boxes [i LANES, (i + 1) LANES) of those whose numbers are in `order`, or of all if not `listed`.

@@ -21,6 +21,7 @@ struct FindCounts {
     std::uint64_t still = 0;         ///< bodies that cannot move whose structure was kept from the last call
     std::uint64_t boxes_inside = 0;  ///< changed boxes that stayed within their fattened box
     double download_ms = 0.0;        ///< spent making pairs readable on the host
+    bool named = false;              ///< pairs are of names, see BoxInput::name
     bool invalid_boxes = false;      ///< it met boxes that are no boxes; which, the caller finds out
 };
 

@@ -52,7 +52,7 @@ SinkLaunch Bvh::search(const BvhTree& tree, const BvhTree& other, const FilterIn
         if (width > 0) defines += " -DWINDOW=" + std::to_string(width);
         kernel = device_.kernel("broad_phase/bvh", "bvh_search", defines);
     }
-    kernel.args(tree.nodes(), tree.levels(), tree.order(), other.nodes(), other.levels(), other.order(),
+    kernel.args(tree.nodes(), tree.levels(), tree.names(), other.nodes(), other.levels(), other.names(),
                 same ? 1u : 0u);
     if (width == 0) return {&kernel, 7, tree.blocks()};
     const std::uint64_t tasks = std::uint64_t{tree.blocks()} * ((other.blocks() - 1) / width + 1);
@@ -83,7 +83,8 @@ void Bvh::find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, Fin
         launches.push_back(from_still ? search(*still, *moving, applied) : search(*moving, *still, applied));
     }
     const std::uint64_t tests_before = counts.box_tests;
-    sink_.collect(launches, applied, n, pairs, counts);
+    counts.named = boxes.names() != nullptr;
+    sink_.collect(launches, applied, boxes.bodies(), pairs, counts);
     trees_.searched(counts.box_tests - tests_before);
 }
 

@@ -247,7 +247,20 @@ void BvhTree::update(BoxInput& boxes) {
         tests_when_built_ = 0;
         worn_ = false;
     }
+    name(boxes);
     n_ = n;
+}
+
+// Keeps the names while they and the order are the same.
+void BvhTree::name(const BoxInput& boxes) {
+    named_ = boxes.names() != nullptr;
+    if (!kept_order_) names_version_ = 0;
+    if (!named_ || (boxes.names_version() != 0 && boxes.names_version() == names_version_)) return;
+    names_version_ = 0;
+    if (!names_kernel_) names_kernel_ = device_.kernel("broad_phase/bvh", "bvh_names");
+    device_.reserve(names_, order_.bytes(), "the names of boxes");
+    device_.launch_items(names_kernel_.args(order_, *boxes.names(), shaped_, names_), shaped_);
+    names_version_ = boxes.names_version();
 }
 
 void BvhTree::searched(std::uint64_t box_tests) {

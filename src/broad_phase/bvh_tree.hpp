@@ -50,6 +50,8 @@ public:
     const Buffer& nodes() const noexcept { return tree_; }
     const Buffer& levels() const noexcept { return levels_; }
     const Buffer& order() const noexcept { return order_; }
+    /// Names of the boxes in this order; order() itself where they have none.
+    const Buffer& names() const noexcept { return named_ ? names_ : order_; }
 
 private:
     void shape(std::uint32_t n);
@@ -57,6 +59,7 @@ private:
     unsigned write_frame(const BoxStatistics& stats, bool finest);
     void sort(BoxInput& boxes, const BoxStatistics& stats, bool finest);
     bool crowded();
+    void name(const BoxInput& boxes);
     double fit(BoxInput& boxes, std::uint32_t n);
     std::uint32_t items_for(std::uint32_t nodes) const;
 
@@ -68,8 +71,10 @@ private:
         Kernel keys, crowded;
     };
     KeyKernels kernels32_, kernels64_;
-    Kernel leaves_kernel_, level_kernel_;
-    Buffer frame_, levels_, keys_, order_, tree_, measures_;
+    Kernel leaves_kernel_, level_kernel_, names_kernel_;
+    std::uint64_t names_version_ = 0;  // of those in names_; 0: none are there
+    bool named_ = false;
+    Buffer names_, frame_, levels_, keys_, order_, tree_, measures_;
     std::vector<std::uint32_t> level_first_;  // block where each level begins; the last is the number of blocks
     std::uint32_t n_ = 0;                     // boxes of the last update that went well, else 0
     std::uint32_t shaped_ = 0;                // boxes that there is room for in blocks_ blocks

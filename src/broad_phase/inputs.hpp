@@ -28,6 +28,20 @@ public:
     cl_mem on(Device& device);
     std::uint64_t first() const noexcept { return first_; }
 
+    /// Boxes are some of many: their numbers among all `bodies`, ascending, are in `names` on the device that has the
+    /// boxes, and are those of the last call with this `version`. An algorithm may put them out in place of places in
+    /// this list, and then sets FindCounts::named.
+    void name(const Buffer& names, std::uint64_t version, std::uint32_t bodies) {
+        names_ = &names;
+        names_version_ = version;
+        bodies_ = bodies;
+    }
+    /// Null: boxes have their places as names.
+    const Buffer* names() const noexcept { return names_; }
+    std::uint64_t names_version() const noexcept { return names_version_; }
+    /// Names are below this.
+    std::uint32_t bodies() const noexcept { return names_ != nullptr ? bodies_ : count_; }
+
 private:
     View<const Aabb> host_;
     std::vector<Aabb> read_back_;
@@ -35,8 +49,9 @@ private:
     cl_mem memory_ = nullptr;
     Buffer* staging_ = nullptr;
     Buffer own_;  // where they go from one device to another
-    std::uint64_t first_ = 0;
-    std::uint32_t count_ = 0;
+    const Buffer* names_ = nullptr;
+    std::uint64_t first_ = 0, names_version_ = 0;
+    std::uint32_t count_ = 0, bodies_ = 0;
 };
 
 /// The filters of one call. `version` (if not 0) tells that they are those of the last call with it.

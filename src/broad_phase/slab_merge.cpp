@@ -10,18 +10,17 @@ namespace {
 
 constexpr std::size_t least_pairs_a_part = std::size_t{1} << 14;
 
-// A run of one slab's list: pairs [at, end), the places of boxes from `member` on.
+// A run of one slab's list: pairs [at, end). In a list without names boxes have places, counted up from `place` on.
 struct Run {
     const Pair* at;
     const Pair* end;
-    std::uint32_t member;
+    std::uint32_t place;
 };
 
 // Boxes [first, end) as the a of pairs, and where their pairs begin in the result.
 struct Part {
     std::uint32_t first, end;
-    std::vector<Run> runs;                // of each slab
-    std::vector<std::uint32_t> runs_end;  // the places that boxes from `end` on have in it
+    std::vector<Run> runs;  // of each slab
     std::size_t pairs = 0, place = 0;
 };
 
@@ -29,16 +28,17 @@ bool has_several(SlabSpan slabs) {
     return slabs.first != slabs.last;
 }
 
+// The rows of lists, that is, the pairs of one a, in the order of boxes.
 class SortedMerge {
 public:
     SortedMerge(const SlabDeal& deal, const SlabLists& lists) : deal_(deal), lists_(lists) {}
 
     Part part(std::uint32_t first, std::uint32_t end) const {
-        Part part{first, end, {}, {}, 0, 0};
+        Part part{first, end, {}, 0, 0};
         for (std::size_t s = 0; s < lists_.size(); ++s) {
-            const std::uint32_t low = place_of(s, first), high = place_of(s, end);
-            part.runs.push_back({row_of(s, low), row_of(s, high), low});
-            part.runs_end.push_back(high);
+            const std::uint32_t place = place_of(s, first);
+            part.runs.push_back({row_of(s, lists_[s].named ? first : place),
+                                 row_of(s, lists_[s].named ? end : place_of(s, end)), place});
         }
         return part;
     }
@@ -46,14 +46,17 @@ public:
     std::size_t count(const Part& part) const {
         std::size_t pairs = 0;
         for (std::size_t s = 0; s < part.runs.size(); ++s) {
-            const Run& run = part.runs[s];
-            pairs += static_cast<std::size_t>(run.end - run.at);
-            pairs -= count_of_others(s, run, part.runs_end[s]);
+            pairs += static_cast<std::size_t>(part.runs[s].end - part.runs[s].at);
+            pairs -= count_of_others(s, part);
         }
         return pairs;
     }
     // Writes the pairs of a part.
     void write(const Part& part, Pair* out) const {
+        if (lists_.size() == 2 && lists_[0].named && lists_[1].named && part.pairs < 8 * (part.end - part.first)) {
+            write_union(part.runs[0], part.runs[1], out);
+            return;
+        }
         std::vector<Run> runs = part.runs;
         for (std::uint32_t a = part.first; a < part.end; ++a) {
             const SlabSpan in = deal_.member_of(a);
@@ -62,37 +65,44 @@ public:
     }
 
 private:
-    // Pairs of a run that belong to other slabs: both boxes are members there, too.
-    std::size_t count_of_others(std::size_t s, const Run& run, std::uint32_t members_end) const {
+    // Pairs of a part in the list of slab s that belong to other slabs: both boxes are members there, too.
+    std::size_t count_of_others(std::size_t s, const Part& part) const {
+        const std::vector<std::uint32_t>& members = deal_.members(s);
+        const Run& run = part.runs[s];
         std::size_t pairs = 0;
         const Pair* row = run.at;
-        for (std::uint32_t m = run.member; m < members_end; ++m) {
-            const std::uint32_t a = box(s, m);
+        for (std::uint32_t place = run.place; place < members.size() && members[place] < part.end; ++place) {
+            const std::uint32_t a = members[place];
             if (!has_several(deal_.member_of(a))) continue;
-            row =
-                std::lower_bound(row, run.end, m, [](const Pair& pair, std::uint32_t first) { return pair.a < first; });
-            for (; row < run.end && row->a == m; ++row) pairs += deal_.owner(a, box(s, row->b)) != s ? 1U : 0U;
+            const std::uint32_t key = lists_[s].named ? a : place;
+            row = std::lower_bound(row, run.end, key, [](const Pair& pair, std::uint32_t k) { return pair.a < k; });
+            for (; row < run.end && row->a == key; ++row) pairs += deal_.owner(a, name_of(s, row->b)) != s ? 1U : 0U;
         }
         return pairs;
     }
-    std::uint32_t box(std::size_t s, std::uint32_t member) const { return deal_.members(s)[member]; }
+    std::uint32_t name_of(std::size_t s, std::uint32_t box) const {
+        return lists_[s].named ? box : deal_.members(s)[box];
+    }
     std::uint32_t place_of(std::size_t s, std::uint32_t box) const {
         const std::vector<std::uint32_t>& members = deal_.members(s);
         return static_cast<std::uint32_t>(std::lower_bound(members.begin(), members.end(), box) - members.begin());
     }
-    const Pair* row_of(std::size_t s, std::uint32_t member) const {
-        return std::lower_bound(lists_[s].begin(), lists_[s].end(), member,
-                                [](const Pair& pair, std::uint32_t m) { return pair.a < m; });
+    const Pair* row_of(std::size_t s, std::uint32_t key) const {
+        return std::lower_bound(lists_[s].pairs.begin(), lists_[s].pairs.end(), key,
+                                [](const Pair& pair, std::uint32_t k) { return pair.a < k; });
     }
     // The pairs of box a, which one slab alone has.
     Pair* write_row(std::uint32_t a, std::size_t s, std::vector<Run>& runs, Pair* out) const {
-        const std::uint32_t* const members = deal_.members(s).data();
         Run& run = runs[s];
-        const std::uint32_t member = run.member++;
         const Pair *at = run.at, *const end = run.end;
-        for (; end - at >= 8 && at[7].a == member; at += 8, out += 8)
-            for (std::size_t k = 0; k < 8; ++k) out[k] = {a, members[at[k].b]};
-        for (; at < end && at->a == member; ++at) *out++ = {a, members[at->b]};
+        if (lists_[s].named) {
+            for (; end - at >= 8 && at[7].a == a; at += 8, out += 8) std::copy(at, at + 8, out);
+            for (; at < end && at->a == a; ++at) *out++ = *at;
+        } else {
+            const std::uint32_t* const members = deal_.members(s).data();
+            const std::uint32_t place = run.place++;
+            for (; at < end && at->a == place; ++at) *out++ = {a, members[at->b]};
+        }
         run.at = at;
         return out;
     }
@@ -101,14 +111,27 @@ private:
         Pair* const row = out;
         for (std::size_t s = in.first; s <= in.last; ++s) {
             Run& run = runs[s];
-            const std::uint32_t member = run.member++;
-            for (; run.at < run.end && run.at->a == member; ++run.at) {
-                const std::uint32_t b = box(s, run.at->b);
+            const std::uint32_t key = lists_[s].named ? a : run.place++;
+            for (; run.at < run.end && run.at->a == key; ++run.at) {
+                const std::uint32_t b = name_of(s, run.at->b);
                 if (deal_.owner(a, b) == s) *out++ = {a, b};
             }
         }
         std::sort(row, out, [](const Pair& p, const Pair& q) { return p.b < q.b; });
         return out;
+    }
+    // Both runs in order; what both have comes once. Without branches: which one is next is a matter of chance.
+    static void write_union(const Run& p, const Run& q, Pair* out) {
+        const auto key = [](const Pair* pair) { return std::uint64_t{pair->a} << 32 | pair->b; };
+        const Pair *i = p.at, *j = q.at;
+        while (i < p.end && j < q.end) {
+            const std::uint64_t k = key(i), l = key(j);
+            *out++ = k <= l ? *i : *j;
+            i += k <= l ? 1 : 0;
+            j += l <= k ? 1 : 0;
+        }
+        out = std::copy(i, p.end, out);
+        std::copy(j, q.end, out);
     }
 
     const SlabDeal& deal_;
@@ -145,8 +168,10 @@ struct Stretch {
 template <class Take>
 void each_pair(const SlabDeal& deal, const SlabLists& lists, const Stretch& stretch, const Take& take) {
     const std::uint32_t* const members = deal.members(stretch.slab).data();
+    const SlabList& list = lists[stretch.slab];
     for (std::size_t i = stretch.first; i < stretch.end; ++i) {
-        const std::uint32_t a = members[lists[stretch.slab][i].a], b = members[lists[stretch.slab][i].b];
+        const Pair pair = list.pairs[i];
+        const std::uint32_t a = list.named ? pair.a : members[pair.a], b = list.named ? pair.b : members[pair.b];
         if (deal.owner(a, b) == stretch.slab) take(Pair{a, b});
     }
 }
@@ -154,8 +179,8 @@ void each_pair(const SlabDeal& deal, const SlabLists& lists, const Stretch& stre
 void join_unsorted(const SlabDeal& deal, const SlabLists& lists, PairList& out) {
     std::vector<Stretch> stretches;
     for (std::size_t s = 0; s < lists.size(); ++s)
-        for (std::size_t i = 0; i < lists[s].size(); i += least_pairs_a_part)
-            stretches.push_back({s, i, std::min(lists[s].size(), i + least_pairs_a_part)});
+        for (std::size_t i = 0; i < lists[s].pairs.size(); i += least_pairs_a_part)
+            stretches.push_back({s, i, std::min(lists[s].pairs.size(), i + least_pairs_a_part)});
     std::vector<std::size_t> counts(stretches.size(), 0);
     parallel_for(stretches.size(), stretches.size() > 1, [&](std::size_t k) {
         std::size_t count = 0;
@@ -178,7 +203,7 @@ void join_unsorted(const SlabDeal& deal, const SlabLists& lists, PairList& out) 
 
 void merge_slabs(const SlabDeal& deal, const SlabLists& lists, bool sorted, PairList& out) {
     std::uint64_t pairs = 0;
-    for (const View<const Pair>& list : lists) pairs += list.size();
+    for (const SlabList& list : lists) pairs += list.pairs.size();
     if (sorted)
         merge_sorted(deal, lists, pairs, out);
     else

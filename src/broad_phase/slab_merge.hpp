@@ -11,8 +11,12 @@
 
 namespace clinch::detail {
 
-/// What was found in slab s: pairs of places in deal.members(s), a < b.
-using SlabLists = std::vector<View<const Pair>>;
+/// What was found in slab s: pairs of places in deal.members(s), a < b, or, if they are named, of boxes.
+struct SlabList {
+    View<const Pair> pairs;
+    bool named = false;
+};
+using SlabLists = std::vector<SlabList>;
 
 /// Appends the pairs of all slabs to `out` (which keeps them), each once, as numbers of boxes; ascending if `sorted`,
 /// as the lists then must be. On the host's threads: two reads of the lists, one write of the result.

@@ -32,6 +32,8 @@ void SlabWorker::assign(std::size_t device) {
     pairs_.clear();
     made_.clear();
     staging_ = Buffer();
+    names_ = Buffer();
+    names_version_ = 0;
     device_ = device;
 }
 
@@ -44,6 +46,19 @@ const Buffer& SlabWorker::send(Device& device, View<const Aabb> boxes, const std
     for (std::size_t i = 0; i < members.size(); ++i) rows[i] = boxes[members[i]];
     device.written(std::move(mapping));
     return staging_;
+}
+
+// Names boxes by their numbers among all.
+void SlabWorker::name(Device& device, const SlabTask& task, BoxInput& input) {
+    const std::vector<std::uint32_t>& members = task.deal.members(slab_);
+    if (names_version_ != task.deal.version() || names_slab_ != slab_) {
+        names_version_ = 0;
+        device.reserve(names_, members.size() * sizeof members[0], "the numbers of boxes");
+        device.write(names_, members.data(), members.size() * sizeof members[0]);
+        names_version_ = task.deal.version();
+        names_slab_ = slab_;
+    }
+    input.name(names_, names_version_, static_cast<std::uint32_t>(task.boxes.size()));
 }
 
 FilterInput SlabWorker::filters_of(const FilterInput& filters, const std::vector<std::uint32_t>& members) {
@@ -59,6 +74,7 @@ void SlabWorker::search(const SlabTask& task, const std::vector<std::uint32_t>& 
     std::unique_ptr<BroadPhaseAlgorithm>& algorithm = made_[&task.row];
     if (!algorithm) algorithm = task.row.make(&device, options_);
     BoxInput input(device, send(device, task.boxes, members).handle(), 0, static_cast<std::uint32_t>(members.size()));
+    if (&members == &task.deal.members(slab_) && !task.filters.any()) name(device, task, input);
     algorithm->find(input, filters_of(task.filters, members), pairs_, counts_);
     // One box alone is none that an algorithm looks at: the host does.
     counts_.invalid_boxes = counts_.invalid_boxes || members.size() == 1;
@@ -82,6 +98,7 @@ void SlabWorker::find(const SlabTask& task, std::size_t s) {
     const double built_before = device.report().build_ms;
     pairs_.clear();
     counts_ = {};
+    slab_ = s;
     if (task.counts_only) pairs_.count_only();
     if (task.counts_only) {
         count(task, s);

@@ -9,6 +9,7 @@
 
 #include "clinch/broad_phase.hpp"
 #include "src/broad_phase/algorithm.hpp"
+#include "src/broad_phase/slab_merge.hpp"
 #include "src/broad_phase/slabs.hpp"
 #include "src/device/context_impl.hpp"
 
@@ -38,8 +39,8 @@ public:
     /// Finds the pairs of slab s, or only counts them. Opens the device if need be.
     void find(const SlabTask& task, std::size_t s);
 
-    /// Pairs of places in task.deal.members(s).
-    View<const Pair> pairs() const noexcept { return pairs_.view(); }
+    /// What was found.
+    SlabList pairs() const noexcept { return {pairs_.view(), counts_.named}; }
     /// How many pairs were found in the slab.
     std::uint64_t found() const noexcept { return found_; }
     /// How many of them belong to it; only where they were counted.
@@ -53,12 +54,15 @@ private:
     void count(const SlabTask& task, std::size_t s);
     void search(const SlabTask& task, const std::vector<std::uint32_t>& members);
     const Buffer& send(Device& device, View<const Aabb> boxes, const std::vector<std::uint32_t>& members);
+    void name(Device& device, const SlabTask& task, BoxInput& input);
     FilterInput filters_of(const FilterInput& filters, const std::vector<std::uint32_t>& members);
 
     Context::Impl& context_;
     BroadPhaseOptions options_;
     std::size_t device_ = 0;
-    Buffer staging_;
+    std::size_t slab_ = 0, names_slab_ = 0;
+    std::uint64_t names_version_ = 0;  // of the deal that names_ are of; 0: none
+    Buffer staging_, names_;
     std::map<const AlgorithmRow*, std::unique_ptr<BroadPhaseAlgorithm>> made_;
     PairList pairs_;  // after `made_`, whose buffers it may map: it ends first
     FindCounts counts_;

@@ -109,6 +109,7 @@ bool SlabDeal::keep(View<const Aabb> boxes) {
 void SlabDeal::deal(View<const Aabb> boxes, const Slabs& slabs) {
     const std::size_t n = boxes.size(), count = slabs.count(), blocks = (n + boxes_a_block - 1) / boxes_a_block;
     slabs_ = slabs;
+    ++version_;
     spans_.resize(n);
     member_of_.resize(n);
     members_.resize(count);

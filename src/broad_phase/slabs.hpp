@@ -52,6 +52,8 @@ public:
     /// boxes, or one reaches into a slab that it is no member of.
     bool keep(View<const Aabb> boxes);
     const Slabs& slabs() const noexcept { return slabs_; }
+    /// Another one after each deal(), none of them 0.
+    std::uint64_t version() const noexcept { return version_; }
     /// Numbers of the boxes of slab s, ascending: all that reach into it, and some near to it.
     const std::vector<std::uint32_t>& members(std::size_t s) const noexcept { return members_[s]; }
     SlabSpan span(std::uint32_t box) const noexcept { return spans_[box]; }
@@ -67,6 +69,7 @@ public:
 
 private:
     Slabs slabs_;
+    std::uint64_t version_ = 0;
     std::vector<SlabSpan> spans_, member_of_;
     std::vector<std::vector<std::uint32_t>> members_;
     std::vector<std::size_t> places_;  // of each block's members in each slab

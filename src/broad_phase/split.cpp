@@ -33,6 +33,15 @@ std::vector<double> guesses_of(const Context::Impl& context) {
     return guesses;
 }
 
+// What a device gets after it had `before`, when `wanted` is best by what was measured: times waver, by page faults and
+// by what else a machine does, and an amount far from all that were measured is a guess.
+double steadied(double before, double wanted) {
+    constexpr double most_change = 1.5, least = 0.02;
+    if (before == 0.0) return wanted;
+    const double now = std::clamp(wanted, before / most_change, before * most_change);
+    return wanted == 0.0 && now < least ? 0.0 : now;
+}
+
 // What was measured wavers; a new cut costs what the algorithms keep of the old slabs.
 bool near(const std::vector<double>& p, const std::vector<double>& q) {
     constexpr double part = 0.04;
@@ -78,13 +87,13 @@ private:
 }  // namespace
 
 BroadSplit::BroadSplit(Context::Impl& context, const BroadPhaseOptions& options)
-    : context_(context), options_(options), shares_(guesses_of(context)) {}
+    : context_(context), options_(options), shares_(guesses_of(context)), given_(shares_.fractions()) {}
 BroadSplit::~BroadSplit() = default;
 
 std::vector<std::size_t> BroadSplit::crew_for(const AlgorithmRow& row, std::uint64_t count) const {
     std::vector<std::size_t> crew;
     for (const std::size_t device : context_.crew()) {
-        const bool has_share = !forced_.empty() || shares_.fractions()[device] > 0.0;
+        const bool has_share = !forced_.empty() || given_[device] > 0.0;
         if (has_share && runs_on(row, context_.infos[device])) crew.push_back(device);
     }
     const std::uint64_t most = count / std::max<std::uint64_t>(1, context_.least_boxes_a_device);
@@ -95,7 +104,7 @@ std::vector<std::size_t> BroadSplit::crew_for(const AlgorithmRow& row, std::uint
 std::vector<double> BroadSplit::fractions_of(const std::vector<std::size_t>& crew) const {
     std::vector<double> fractions;
     for (std::size_t k = 0; k < crew.size(); ++k)
-        fractions.push_back(forced_.empty() ? shares_.fractions()[crew[k]] : k < forced_.size() ? forced_[k] : 0.0);
+        fractions.push_back(forced_.empty() ? given_[crew[k]] : k < forced_.size() ? forced_[k] : 0.0);
     const double sum = std::accumulate(fractions.begin(), fractions.end(), 0.0);
     for (double& fraction : fractions) fraction /= sum;
     return fractions;
@@ -247,6 +256,7 @@ void BroadSplit::measure() {
     for (std::size_t s = 0; s < workers_.size(); ++s)
         measures[workers_[s]->device()] = {static_cast<double>(deal_.members(s).size()), workers_[s]->seconds()};
     shares_.measured(measures);
+    for (std::size_t d = 0; d < given_.size(); ++d) given_[d] = steadied(given_[d], shares_.fractions()[d]);
 }
 
 void BroadSplit::forget_pairs() {

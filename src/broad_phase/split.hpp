@@ -58,7 +58,8 @@ private:
 
     Context::Impl& context_;
     const BroadPhaseOptions& options_;
-    Shares shares_;  // of the devices of the context
+    Shares shares_;              // of the devices of the context
+    std::vector<double> given_;  // the same, changed little by little
     std::vector<double> forced_;
     SlabDeal deal_;
     std::vector<std::size_t> dealt_to_;                 // who has which slab of it

@@ -34,9 +34,18 @@ std::vector<Pair> pairs_in(const std::vector<Aabb>& boxes, const std::vector<std
     return test::pairs_by_hand(own);
 }
 
-std::vector<Pair> merged(const SlabDeal& deal, const std::vector<std::vector<Pair>>& found, bool sorted) {
+// `named`: of each slab, whether its list is handed over with names of boxes in place of their places.
+std::vector<Pair> merged(const SlabDeal& deal, std::vector<std::vector<Pair>> found, bool sorted,
+                         const std::vector<bool>& named = {}) {
+    SlabLists lists;
+    for (std::size_t s = 0; s < found.size(); ++s) {
+        const bool is_named = s < named.size() && named[s];
+        if (is_named)
+            for (Pair& pair : found[s]) pair = {deal.members(s)[pair.a], deal.members(s)[pair.b]};
+        lists.push_back({found[s], is_named});
+    }
     PairList list;
-    merge_slabs(deal, {found.begin(), found.end()}, sorted, list);
+    merge_slabs(deal, lists, sorted, list);
     const View<const Pair> pairs = list.view();
     return {pairs.begin(), pairs.end()};
 }
@@ -63,10 +72,17 @@ TEST_CASE("lists of slabs become the list of all boxes, each pair once", "[host]
                 found.push_back(pairs_in(boxes, deal.members(s)));
             }
             const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+            std::vector<bool> named;
+            for (std::size_t s = 0; s < count; ++s) named.push_back(random.below(2) == 0);
             CHECK(merged(deal, found, true) == expected);
+            CHECK(merged(deal, found, true, named) == expected);
+            CHECK(merged(deal, found, true, std::vector<bool>(count, true)) == expected);
             for (std::vector<Pair>& list : found)
                 for (std::size_t i = list.size(); i > 1; --i) std::swap(list[i - 1], list[random.below(i)]);
             std::vector<Pair> any = merged(deal, found, false);
+            std::sort(any.begin(), any.end());
+            CHECK(any == expected);
+            any = merged(deal, found, false, named);
             std::sort(any.begin(), any.end());
             CHECK(any == expected);
         }
@@ -121,6 +137,7 @@ TEST_CASE("many pairs are merged in many parts", "[host]") {
     const std::vector<Pair> expected = test::pairs_by_sweep(boxes);
     REQUIRE(expected.size() > 70000);
     CHECK(merged(deal, found, true) == expected);
+    CHECK(merged(deal, found, true, {true, true, true}) == expected);
     std::vector<Pair> any = merged(deal, found, false);
     std::sort(any.begin(), any.end());
     CHECK(any == expected);
