@@ -38,7 +38,8 @@ struct BroadPhaseOptions {
     bool events = false;
     /// Room for the pairs that stream() hands over at a time, on the device and on the host.
     std::size_t stream_bytes = std::size_t{64} << 20;
-    /// Called now and then during long work with the share done, 0 to 1; may throw to stop the work.
+    /// Called now and then during long work with the share done, 0 to 1; may throw to stop the work. Where several
+    /// devices share the work, on their threads, but never twice at once.
     std::function<void(double)> progress;
     /// Wait for the device after each stage, so that StageTimes are those of the stages (costs a
     /// few tens of microseconds a stage).

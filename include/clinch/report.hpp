@@ -29,6 +29,7 @@ struct Skipped {
     std::uint64_t still = 0;  ///< bodies that cannot move whose structure was kept from the last call
     // Pairs of two bodies that cannot move are in neither count where the broad phase did not test them at all, as
     // `bvh` does among many bodies.
+    // Where several devices share the work, a pair at a border may count on both sides.
     std::uint64_t pairs_filtered = 0;  ///< overlapping pairs dropped by group and mask
     std::uint64_t static_pairs = 0;    ///< overlapping pairs dropped since neither body can move
 };

@@ -136,6 +136,10 @@ void BroadPhase::Impl::listed(std::uint64_t count) {
 bool BroadPhase::Impl::find_split(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
                                   const detail::FilterInput& filters, detail::FindCounts& counts) {
     if (context.infos.size() < 2 || pairs.streams()) return false;
+    if (context.crew().size() < 2) {
+        split.reset();
+        return false;
+    }
     if (!split) split = std::make_unique<detail::BroadSplit>(context, options);
     if (!split->pays(row, boxes.count()) || !split->find(row, boxes, filters, pairs, counts)) return false;
     report.broad_split = split->work();
@@ -168,6 +172,13 @@ void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& bo
         return true;
     });
     if (any_invalid && list_rejected) report.rejected = rejected_boxes(boxes.on_host());
+}
+
+bool BroadPhase::Impl::settle() {
+    if (context.infos.empty() || made_on == context.primary()) return true;
+    const bool first = made_on == nowhere;
+    made_on = context.primary();
+    return first || drop_device();
 }
 
 bool BroadPhase::Impl::drop_device() {
@@ -232,6 +243,7 @@ View<const Pair> BroadPhase::Impl::find_to_step(const detail::AlgorithmRow& row,
 }
 
 void BroadPhase::Impl::begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters) {
+    if (made_on != context.primary()) return;  // another device from now on: next time
     const detail::Stopwatch watch;
     const std::vector<Pair> list(pairs.view().begin(), pairs.view().end());
     pairs.clear();
@@ -275,10 +287,13 @@ BroadPhase& BroadPhase::operator=(BroadPhase&& other) noexcept = default;
 template <class Work>
 auto BroadPhase::Impl::in_any_case(const Work& work) -> decltype(work()) {
     std::vector<std::string> warnings;
-    const auto result = detail::with_failover(context, warnings, work, [&] {
-        if (!drop_device())
-            warnings.emplace_back("the list of pairs before was lost with the device: all pairs are told as added");
-    });
+    const auto result = detail::with_failover(
+        context, warnings,
+        [&] {
+            if (!settle()) warnings.emplace_back(events_lost);
+            return work();
+        },
+        [] {});
     report.warnings.insert(report.warnings.begin(), warnings.begin(), warnings.end());
     return result;
 }
@@ -376,6 +391,7 @@ View<const Pair> find_pairs(BroadPhase& broad_phase, cl_mem boxes, std::size_t c
                             const FilterColumns& filters) {
     check_count(count);
     BroadPhase::Impl& impl = broad_phase.impl();
+    impl.settle();
     detail::Device& device = impl.device();
     const std::size_t bytes = device.bytes_of(boxes, "boxes");
     if (first > bytes / sizeof(Aabb) || count > bytes / sizeof(Aabb) - first)

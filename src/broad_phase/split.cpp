@@ -130,6 +130,7 @@ bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& cr
     if (crew == dealt_to_ && near(fractions, dealt_) && deal_.keep(boxes)) return true;
     const Slabs slabs = choose_slabs(boxes, fractions);
     if (forced_.empty() && static_cast<double>(crew.size()) < least_speed_up * (1.0 + slabs.copies)) return false;
+    dealt_to_.clear();  // until all went well
     deal_.deal(boxes, slabs);
     dealt_to_ = crew;
     dealt_ = fractions;
@@ -139,6 +140,8 @@ bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& cr
 bool BroadSplit::find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
                       FindCounts& counts) {
     warnings_.clear();
+    for (std::size_t d = 0; d < context_.infos.size(); ++d)
+        if (!context_.in_use(d)) shares_.retire(d);
     const std::vector<std::size_t> crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
     if (!deal(on_host, crew)) return false;
@@ -162,7 +165,7 @@ void BroadSplit::run(const SlabTask& task) {
             if (is_limit(error)) throw_limit(task);
             std::rethrow_exception(error);
         }
-        which = reassign(which, thrown);
+        which = reassign(task.row, which, thrown);
     }
 }
 
@@ -174,7 +177,7 @@ std::vector<std::exception_ptr> BroadSplit::run_once(const SlabTask& task, const
     for (auto& [device, list] : of_device) lists.push_back(std::move(list));
     std::vector<std::exception_ptr> thrown(which.size());
     Progress progress(options_.progress, which.size());
-    run_crew(lists.size(), [&](std::size_t k) {
+    const auto work = [&](std::size_t k) {
         for (const std::size_t i : lists[k]) {
             SlabWorker& worker = *workers_[which[i]];
             worker.options().progress = progress.of(i);
@@ -188,12 +191,15 @@ std::vector<std::exception_ptr> BroadSplit::run_once(const SlabTask& task, const
             }
             worker.options().progress = nullptr;
         }
-    });
+    };
+    const std::vector<std::exception_ptr> not_begun = run_crew(lists.size(), work);
+    for (std::size_t k = 0; k < lists.size(); ++k)
+        if (not_begun[k] != nullptr) work(k);  // there was no thread to be had
     return thrown;
 }
 
 // Retires the devices that failed and gives their slabs to others. Returns the slabs that are to be done again.
-std::vector<std::size_t> BroadSplit::reassign(const std::vector<std::size_t>& which,
+std::vector<std::size_t> BroadSplit::reassign(const AlgorithmRow& row, const std::vector<std::size_t>& which,
                                               const std::vector<std::exception_ptr>& thrown) {
     std::vector<std::size_t> again;
     for (std::size_t i = 0; i < which.size(); ++i) {
@@ -205,7 +211,12 @@ std::vector<std::size_t> BroadSplit::reassign(const std::vector<std::size_t>& wh
         shares_.retire(device);
         warnings_.push_back(context_.why_retired(device));
     }
-    const std::vector<std::size_t> left = context_.crew();
+    if (again.empty()) return again;
+    std::vector<std::size_t> left;
+    for (const std::size_t device : context_.crew())
+        if (runs_on(row, context_.infos[device])) left.push_back(device);
+    if (left.empty())
+        std::rethrow_exception(*std::find_if(thrown.begin(), thrown.end(), [](const auto& e) { return e != nullptr; }));
     for (std::size_t i = 0; i < again.size(); ++i) workers_[again[i]]->assign(left[i % left.size()]);
     return again;
 }

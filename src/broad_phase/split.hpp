@@ -50,7 +50,7 @@ private:
     void prepare(const std::vector<std::size_t>& crew);
     void run(const SlabTask& task);
     std::vector<std::exception_ptr> run_once(const SlabTask& task, const std::vector<std::size_t>& which);
-    std::vector<std::size_t> reassign(const std::vector<std::size_t>& which,
+    std::vector<std::size_t> reassign(const AlgorithmRow& row, const std::vector<std::size_t>& which,
                                       const std::vector<std::exception_ptr>& thrown);
     [[noreturn]] void throw_limit(const SlabTask& task);
     void gather(bool counts_only, PairList& pairs, FindCounts& counts);

@@ -55,8 +55,8 @@ bool is_device_fault(const std::exception_ptr& thrown) {
     try {
         std::rethrow_exception(thrown);
     } catch (const Error& error) {
-        return error.code() == ErrorCode::DeviceFailed || error.code() == ErrorCode::OutOfMemory ||
-               error.code() == ErrorCode::BuildFailed;
+        // What a device cannot do by its kind is no failure of an OpenCL call.
+        return error.opencl_status() != 0 || error.code() == ErrorCode::OutOfMemory;
     } catch (...) {
         return false;
     }

@@ -14,8 +14,8 @@ namespace clinch::detail {
 /// not. Returns what each threw, null where nothing was.
 std::vector<std::exception_ptr> run_crew(std::size_t count, const std::function<void(std::size_t)>& work);
 
-/// Whether a device gave up, so that another one may do its work: an OpenCL call failed, memory was short there, or a
-/// kernel did not build. All else is the fault of what was asked for.
+/// Whether a device gave up, so that another one may do its work: an OpenCL call failed (that of a build, too) or
+/// memory was short there. All else is the fault of what was asked for.
 bool is_device_fault(const std::exception_ptr& thrown);
 
 /// The message of an exception.

@@ -257,7 +257,8 @@ Buffer Device::allocate(std::size_t bytes, const char* what) {
 }
 
 void Device::reserve(Buffer& buffer, std::size_t bytes, const char* what) {
-    if (buffer.bytes() >= bytes && buffer.handle() != nullptr) return;
+    const bool own = buffer.account_ == impl_->account;  // not of a device that all was on before
+    if (own && buffer.bytes() >= bytes && buffer.handle() != nullptr) return;
     // Fresh memory costs more than what is done with it: what grew once is given room to grow a little again.
     const std::size_t room = buffer.handle() != nullptr ? bytes / 8 : 0;
     buffer = Buffer();  // first, so that old and new need not fit side by side

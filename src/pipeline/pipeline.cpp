@@ -63,7 +63,6 @@ struct StepResult::Impl {
     void step_again();
     void start_afresh();
     void leave_bounds();
-    void leave_device(std::vector<std::string>& warnings);
     View<const Pair> find_changed(const detail::AlgorithmRow& row, const detail::FilterInput& filters);
     detail::FilterInput filters(const Scene& scene);
     View<const Pair> find_on_device(const Scene& scene, const detail::AlgorithmRow& row, std::size_t& changed);
@@ -91,14 +90,6 @@ void StepResult::Impl::start_afresh() {
 void StepResult::Impl::leave_bounds() {
     device_bounds.reset();
     planes = detail::PlanePairs();
-}
-
-// The device that all was on has failed.
-void StepResult::Impl::leave_device(std::vector<std::string>& warnings) {
-    start_afresh();
-    leave_bounds();
-    if (!broad.impl().drop_device())
-        warnings.emplace_back("the list of pairs before was lost with the device: all pairs are told as added");
 }
 
 // The filters of a scene, under a number that changes when they may have.
@@ -135,7 +126,8 @@ View<const Pair> StepResult::Impl::find_on_device(const Scene& scene, const deta
 View<const Pair> StepResult::Impl::find_changed(const detail::AlgorithmRow& row, const detail::FilterInput& filters) {
     BroadPhase::Impl& impl = broad.impl();
     const View<const std::uint32_t> sent = device_bounds->sent();
-    detail::BoxInput input(device_bounds->device(), device_bounds->boxes().handle(), 0, static_cast<std::uint32_t>(rows));
+    detail::BoxInput input(device_bounds->device(), device_bounds->boxes().handle(), 0,
+                           static_cast<std::uint32_t>(rows));
     if (impl.listed_boxes == rows && stepped_rows == rows) {
         if (sent.empty() && !filters_changed) return impl.same_again();
         if (impl.steps_pay(row, rows, sent.size())) {
@@ -214,6 +206,7 @@ void StepResult::Impl::step(const Scene& scene) {
         report.ms.total = total.ms();
         return;
     }
+    broad.impl().settle();
     pairs = {};
     contacts = {};
     boxes_read.reset();
@@ -294,7 +287,11 @@ const StepResult& Pipeline::step(const Scene& scene) {
     std::vector<std::string> warnings;
     try {
         detail::with_failover(
-            impl.broad.impl().context, warnings, [&] { impl.step(scene); }, [&] { impl.leave_device(warnings); });
+            impl.broad.impl().context, warnings, [&] { impl.step(scene); },
+            [&] {
+                impl.start_afresh();
+                impl.leave_bounds();
+            });
     } catch (...) {
         impl.start_afresh();
         throw;

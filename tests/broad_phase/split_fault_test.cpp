@@ -213,3 +213,83 @@ TEST_CASE("a step of a pipeline goes to other devices when one fails", "[device]
             if (failing.retired() > 0) CHECK_FALSE(result.report().warnings.empty());
         }
 }
+
+TEST_CASE("what was kept on a device that a split has retired is not used again", "[device]") {
+    Failing failing;
+    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 3000, 12);
+    const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+    const std::size_t first = failing.context.impl().primary();
+    for (const char* const algorithm : {"brute", "bvh"}) {
+        INFO(algorithm);
+        failing.reset(false);
+        BroadPhaseOptions options;
+        options.algorithm = algorithm;
+        BroadPhase broad(failing.context, options), other(failing.context, options);
+        const auto streamed = [&](BroadPhase& by) {
+            std::vector<Pair> all;
+            by.stream(boxes, [&](View<const Pair> pairs) { all.insert(all.end(), pairs.begin(), pairs.end()); });
+            std::sort(all.begin(), all.end());
+            return all;
+        };
+        CHECK(streamed(broad) == expected);
+        CHECK(streamed(other) == expected);
+        failing.faults.fail(from_call(first, 12), CL_OUT_OF_RESOURCES);
+        CHECK(test::same(broad.find(boxes), expected));
+        REQUIRE_FALSE(failing.context.impl().in_use(first));
+        CHECK(streamed(broad) == expected);
+        CHECK(streamed(other) == expected);  // it has seen no failure itself
+        CHECK(broad.report().warnings.empty());
+        CHECK(failing.retired() == 1);
+    }
+}
+
+TEST_CASE("a step after its narrow phase has retired a device begins on another one", "[device]") {
+    Failing failing;
+    failing.context.impl().least_boxes_a_device = 1000000;
+    const std::size_t first = failing.context.impl().primary();
+    Scene scene;
+    const ShapeId ball = scene.add_shape(Sphere{0.6});
+    test::Random random(13);
+    const auto whole = [&] { return static_cast<double>(random.below(768)); };  // sums of such heights are exact
+    for (int i = 0; i < 3000; ++i)
+        scene.add_body({ball, Pose{{random.between(0.0, 12.0), random.between(0.0, 12.0), whole() / 64.0}}});
+    PipelineOptions options;
+    options.broad_phase.algorithm = "bvh";
+    options.contacts = true;
+    options.narrow_phase.contacts_per_pair = 1;
+    Pipeline reference(failing.context, options);
+    const auto both = [&](Pipeline& pipeline) {
+        const StepResult& result = pipeline.step(scene);
+        return test::bytes(result.pairs()) + test::bytes(result.contacts());
+    };
+    const auto move = [&](double way) {
+        for (std::uint32_t i = 0; i < scene.row_count(); i += 2) {
+            Pose pose = scene.body({i}).pose;
+            pose.position.z += way;
+            scene.set_pose({i}, pose);
+        }
+    };
+    const std::string before = both(reference);
+    move(0.25);
+    const std::string after = both(reference);
+    move(-0.25);
+    Pipeline pipeline(failing.context, options);
+    std::size_t calls = 0;  // those of the step, of which the last are the narrow phase's
+    failing.faults.fail(
+        [&](std::size_t, const std::string&, std::size_t) {
+            ++calls;
+            return false;
+        },
+        CL_SUCCESS);
+    CHECK((both(pipeline) == before));
+    failing.faults.watch();
+    Pipeline struck(failing.context, options);
+    failing.faults.fail(from_call(first, calls - 2), CL_OUT_OF_RESOURCES);
+    CHECK((both(struck) == before));
+    REQUIRE_FALSE(failing.context.impl().in_use(first));
+    CHECK_FALSE(struck.step(scene).pairs().empty());
+    move(0.25);
+    CHECK((both(struck) == after));
+    CHECK(struck.step(scene).report().warnings.empty());
+    CHECK(failing.retired() == 1);
+}

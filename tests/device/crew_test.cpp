@@ -31,7 +31,7 @@ TEST_CASE("a crew runs all at once", "[host]") {
 TEST_CASE("what one of a crew throws is told apart, and the others end their work", "[host]") {
     std::vector<int> done(4, 0);
     const auto thrown = run_crew(4, [&](std::size_t k) {
-        if (k == 0) throw Error(ErrorCode::DeviceFailed, "gone");
+        if (k == 0) throw Error(ErrorCode::DeviceFailed, "gone", -2);
         if (k == 2) throw std::runtime_error("asked wrongly");
         done[k] = 1;
     });
@@ -43,6 +43,7 @@ TEST_CASE("what one of a crew throws is told apart, and the others end their wor
     CHECK(is_device_fault(thrown[0]));
     CHECK_FALSE(is_device_fault(thrown[2]));
     CHECK_FALSE(is_device_fault(std::make_exception_ptr(Error(ErrorCode::LimitExceeded, "too many"))));
+    CHECK_FALSE(is_device_fault(std::make_exception_ptr(Error(ErrorCode::DeviceFailed, "not one for this"))));
     CHECK(detail::message_of(thrown[0]) == "gone");
     CHECK(detail::message_of(thrown[2]) == "asked wrongly");
 }
