@@ -44,7 +44,7 @@ double steadied(double before, double wanted) {
 
 // What was measured wavers; a new cut costs what the algorithms keep of the old slabs.
 bool near(const std::vector<double>& p, const std::vector<double>& q) {
-    constexpr double part = 0.04;
+    constexpr double part = 0.1;
     for (std::size_t i = 0; i < p.size(); ++i)
         if (std::fabs(p[i] - q[i]) > part * std::max(p[i], q[i])) return false;
     return p.size() == q.size();
@@ -87,7 +87,11 @@ private:
 }  // namespace
 
 BroadSplit::BroadSplit(Context::Impl& context, const BroadPhaseOptions& options)
-    : context_(context), options_(options), shares_(guesses_of(context)), given_(shares_.fractions()) {}
+    : context_(context),
+      options_(options),
+      shares_(guesses_of(context)),
+      given_(shares_.fractions()),
+      paces_(context.infos.size()) {}
 BroadSplit::~BroadSplit() = default;
 
 std::vector<std::size_t> BroadSplit::crew_for(const AlgorithmRow& row, std::uint64_t count) const {
@@ -264,10 +268,21 @@ std::vector<DeviceWork> BroadSplit::work() const {
 void BroadSplit::measure() {
     if (!warnings_.empty()) return;
     std::vector<Shares::Measure> measures(context_.infos.size());
-    for (std::size_t s = 0; s < workers_.size(); ++s)
-        measures[workers_[s]->device()] = {static_cast<double>(deal_.members(s).size()), workers_[s]->seconds()};
+    for (std::size_t s = 0; s < workers_.size(); ++s) {
+        const std::size_t device = workers_[s]->device();
+        const auto work = static_cast<double>(deal_.members(s).size());
+        if (work > 0.0) measures[device] = {work, work * paces_[device].after(workers_[s]->seconds() / work)};
+    }
     shares_.measured(measures);
     for (std::size_t d = 0; d < given_.size(); ++d) given_[d] = steadied(given_[d], shares_.fractions()[d]);
+}
+
+double BroadSplit::Paces::after(double pace) {
+    last_[count_++ % last_.size()] = pace;
+    std::array<double, 5> sorted = last_;
+    const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(count_, sorted.size()));
+    std::sort(sorted.begin(), end);
+    return sorted[static_cast<std::size_t>(end - sorted.begin() - 1) / 2];
 }
 
 void BroadSplit::forget_pairs() {
