@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,8 +11,8 @@ namespace clinch::scaling {
 /// One number of devices.
 struct Point {
     std::size_t devices;
-    double seconds;        ///< a step, once the shares have settled; the mean of several
-    double ideal_seconds;  ///< if all devices did nothing but compute, until the last moment
+    double seconds;        ///< a step, once the shares have settled; simulated the mean, real the median of several
+    double ideal_seconds;  ///< if all did nothing but compute, until the last moment; real: what one takes, divided
     double stolen;         ///< part of the chunks that another device did than the one they were dealt to
 };
 
@@ -29,6 +30,9 @@ struct Machine {
     std::vector<std::string> assumptions;  ///< of a simulated one: what was not measured
     std::vector<Curve> curves;
 };
+
+/// The cores of this machine's CPU as devices, up to `most`; nothing if PoCL does not offer it.
+std::optional<Machine> real(std::size_t most);
 
 /// Devices simulated by bench/machines, up to `most`. The same for the same seed.
 Machine simulated(std::size_t most, unsigned long long seed);

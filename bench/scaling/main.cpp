@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 
 #include "bench/scaling/curve.hpp"
@@ -38,10 +39,17 @@ int run(int argc, char** argv) {
     unsigned long long seed = 1;
     app.add_option("-o,--output", path, "default: standard output");
     app.add_option("--devices", most, "at most; default 64")->check(CLI::Range(1, 64));
+    bool measure = false;
+    app.add_flag("--real", measure, "also measure this machine's CPU, each core a device (a minute)");
     app.add_option("--seed", seed, "of speeds, work and noise; default 1");
     CLI11_PARSE(app, argc, argv);
-    const Json content = {
-        {"program", "clinch_scaling"}, {"seed", seed}, {"machines", Json::array({to_json(simulated(most, seed))})}};
+    Json machines = Json::array({to_json(simulated(most, seed))});
+    if (measure) {
+        const std::optional<Machine> here = real(most);
+        if (!here) throw std::runtime_error("--real needs PoCL, which has no CPU here");
+        machines.push_back(to_json(*here));
+    }
+    const Json content = {{"program", "clinch_scaling"}, {"seed", seed}, {"machines", machines}};
     if (path.empty()) {
         std::cout << content.dump(1) << '\n';
         return 0;

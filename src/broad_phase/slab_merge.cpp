@@ -53,7 +53,7 @@ public:
     }
     // Writes the pairs of a part.
     void write(const Part& part, Pair* out) const {
-        if (lists_.size() == 2 && lists_[0].named && lists_[1].named && part.pairs < 8 * (part.end - part.first)) {
+        if (lists_.size() == 2 && lists_[0].named && lists_[1].named && part.pairs / 8 < part.end - part.first) {
             write_union(part.runs[0], part.runs[1], out);
             return;
         }

@@ -31,6 +31,7 @@ Slabs slabs_across(int axis, const std::vector<Aabb>& sample, const std::vector<
     Slabs slabs;
     slabs.axis = axis;
     std::vector<float> begins;
+    begins.reserve(sample.size());
     for (const Aabb& box : sample) begins.push_back(box.min[axis]);
     std::sort(begins.begin(), begins.end());
     double before = 0.0;

@@ -178,6 +178,7 @@ std::vector<std::exception_ptr> BroadSplit::run_once(const SlabTask& task, const
     std::map<std::size_t, std::vector<std::size_t>> of_device;  // places in `which`
     for (std::size_t i = 0; i < which.size(); ++i) of_device[workers_[which[i]]->device()].push_back(i);
     std::vector<std::vector<std::size_t>> lists;
+    lists.reserve(of_device.size());
     for (auto& [device, list] : of_device) lists.push_back(std::move(list));
     std::vector<std::exception_ptr> thrown(which.size());
     Progress progress(options_.progress, which.size());

@@ -1,8 +1,8 @@
 #include "bench/peers/narrow/worker.hpp"
 
 #include <omp.h>
-#include <tbb/task_arena.h>
 #include <sched.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <chrono>
