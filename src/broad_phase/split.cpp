@@ -21,15 +21,9 @@ namespace {
 // Less than this, by the boxes that several devices have, does not pay.
 constexpr double least_speed_up = 1.3;
 
-// How fast a device may be before it was measured.
-double guess_of(const DeviceInfo& info) {
-    const double lanes = info.type == DeviceType::Gpu ? 64.0 : info.lanes;
-    return std::max(1.0, info.compute_units * lanes);
-}
-
 std::vector<double> guesses_of(const Context::Impl& context) {
     std::vector<double> guesses;
-    for (const DeviceInfo& info : context.infos) guesses.push_back(guess_of(info));
+    for (const DeviceInfo& info : context.infos) guesses.push_back(guessed_speed(info));
     return guesses;
 }
 

@@ -1,5 +1,6 @@
 #include "src/device/crew.hpp"
 
+#include <algorithm>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -60,6 +61,11 @@ bool is_device_fault(const std::exception_ptr& thrown) {
     } catch (...) {
         return false;
     }
+}
+
+double guessed_speed(const DeviceInfo& device) noexcept {
+    const double lanes = device.type == DeviceType::Gpu ? 64.0 : device.lanes;
+    return std::max(1.0, device.compute_units * lanes);
 }
 
 std::string message_of(const std::exception_ptr& thrown) {

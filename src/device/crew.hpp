@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "clinch/device.hpp"
+
 namespace clinch::detail {
 
 /// Runs `work(k)` for each k below `count` at once, each in a host thread of its own (k = 0 in the caller's), and waits
@@ -17,6 +19,9 @@ std::vector<std::exception_ptr> run_crew(std::size_t count, const std::function<
 /// Whether a device gave up, so that another one may do its work: an OpenCL call failed (that of a build, too) or
 /// memory was short there. All else is the fault of what was asked for.
 bool is_device_fault(const std::exception_ptr& thrown);
+
+/// How fast a device may be beside others, while nothing was measured.
+double guessed_speed(const DeviceInfo& device) noexcept;
 
 /// The message of an exception.
 std::string message_of(const std::exception_ptr& thrown);

@@ -15,11 +15,6 @@ namespace {
 // something left to take over.
 constexpr std::size_t least_chunks = 2;
 
-// Of each device beside the others, while nothing is measured.
-double guessed_speed(const DeviceInfo& info) {
-    return std::max(1.0, static_cast<double>(info.compute_units) * static_cast<double>(info.lanes));
-}
-
 }  // namespace
 
 void NarrowDevices::shapes_changed() noexcept {

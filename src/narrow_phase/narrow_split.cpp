@@ -57,11 +57,12 @@ bool NarrowSplit::run() {
                 remaining.push_back(crew[i]);
                 continue;
             }
-            if (!is_device_fault(thrown[i])) std::rethrow_exception(thrown[i]);
-            if (began[i] != 0)
-                faults_[crew[i]] = thrown[i];
-            else  // no thread for it: not its fault, but it takes no part
+            if (began[i] == 0) {  // no thread for it: not its fault, but it takes no part
                 queue_.retire(crew[i], std::nullopt);
+                continue;
+            }
+            if (!is_device_fault(thrown[i])) std::rethrow_exception(thrown[i]);
+            faults_[crew[i]] = thrown[i];
         }
         crew = std::move(remaining);
     }
