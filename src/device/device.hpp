@@ -165,7 +165,7 @@ public:
 
     /// Memory of `bytes` (0 is taken as 1). `what` names its use in the error when memory is short.
     Buffer allocate(std::size_t bytes, const char* what);
-    /// Makes `buffer` at least `bytes` long; when it grows its content is lost.
+    /// Makes `buffer` at least `bytes` long; when it grows its content is lost, and it is given an eighth more.
     void reserve(Buffer& buffer, std::size_t bytes, const char* what);
     /// Copies host memory in; the host memory may be reused on return. Little of it does not wait.
     void write(const Buffer& buffer, const void* data, std::size_t bytes, std::size_t offset = 0);
