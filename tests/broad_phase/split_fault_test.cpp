@@ -79,6 +79,8 @@ TEST_CASE("a device that fails in a split search is retired and the pairs are wh
     constexpr std::uint64_t seed = 61;
     test::Random random(seed);
     Failing failing;
+    // llvmpipe, which has a quirk, compiles each kernel object anew.
+    const std::size_t most = failing.context.devices()[0].quirks.empty() ? 8 : 3;
     const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 3000, seed);
     const std::vector<Pair> expected = test::pairs_by_hand(boxes);
     for (const std::string& name : test::names_for(failing.context.devices()[0])) {
@@ -93,7 +95,7 @@ TEST_CASE("a device that fails in a split search is retired and the pairs are wh
             });
             for (std::size_t device = 0; device < devices; ++device) {
                 REQUIRE(calls[device] > 5);
-                for (const std::size_t number : numbers_of(calls[device], closed ? 3 : 8, random)) {
+                for (const std::size_t number : numbers_of(calls[device], closed ? 3 : most, random)) {
                     INFO(name << ", device " << device << (closed ? ", closed," : "") << " fails from call " << number
                               << " of " << calls[device] << ", seed " << seed);
                     failing.reset(closed);
