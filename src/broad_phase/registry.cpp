@@ -4,6 +4,7 @@
 
 #include "clinch/error.hpp"
 #include "src/broad_phase/algorithm.hpp"
+#include "src/broad_phase/box_sample.hpp"
 #include "src/device/quirks.hpp"
 
 namespace clinch::detail {
@@ -51,21 +52,6 @@ constexpr std::uint64_t boxes_taken_as_usual = 1500, boxes_taken_as_usual_unseen
 constexpr std::size_t sample_size = 64;
 using Sample = std::vector<Aabb>;
 
-// Boxes taken at random, those that are none left out; always the same ones.
-Sample sample_of(View<const Aabb> boxes) {
-    Sample sample;
-    sample.reserve(sample_size);
-    std::uint32_t random = 1;
-    for (std::size_t k = 0; k < sample_size; ++k) {
-        random = random * 1664525u + 1013904223u;  // [Knuth, The Art of Computer Programming 2, 3.3.4]
-        const Aabb& box = boxes[static_cast<std::size_t>(std::uint64_t{random} * boxes.size() >> 32)];
-        bool valid = true;
-        for (int d = 0; d < 3; ++d) valid = valid && std::isfinite(box.min[d]) && std::isfinite(box.max[d]);
-        if (valid) sample.push_back(box);
-    }
-    return sample;
-}
-
 // The axis on which centres vary most, as host-sweep chooses it.
 int axis_of_variance(const Sample& sample) {
     int axis = 0;
@@ -84,7 +70,7 @@ int axis_of_variance(const Sample& sample) {
 
 // How many tests a sweep takes, by a sample, whose pairs are counted that overlap on the axis.
 double sweep_tests(View<const Aabb> boxes) {
-    const Sample sample = sample_of(boxes);
+    const Sample sample = sample_of(boxes, sample_size);
     if (sample.size() < 2) return 0.0;
     const int axis = axis_of_variance(sample);
     std::uint32_t overlaps = 0;

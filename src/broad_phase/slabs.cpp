@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "src/broad_phase/box_sample.hpp"
 #include "src/primitives/host_parallel.hpp"
 
 namespace clinch::detail {
@@ -10,22 +11,6 @@ namespace {
 
 constexpr std::size_t sample_size = 4096, boxes_a_block = std::size_t{1} << 15;
 constexpr double slack_widths = 0.25;  // of boxes: bodies that move much farther in a step are few
-
-std::vector<Aabb> sample_of(View<const Aabb> boxes) {
-    std::vector<Aabb> sample;
-    const std::size_t size = std::min(sample_size, boxes.size());
-    sample.reserve(size);
-    std::uint32_t random = 1;
-    for (std::size_t k = 0; k < size; ++k) {
-        random = random * 1664525u + 1013904223u;  // [Knuth, The Art of Computer Programming 2, 3.3.4]
-        const Aabb& box = boxes[static_cast<std::size_t>(std::uint64_t{random} * boxes.size() >> 32)];
-        bool valid = true;
-        for (int d = 0; d < 3; ++d)
-            valid = valid && std::isfinite(box.min[d]) && std::isfinite(box.max[d]) && box.min[d] <= box.max[d];
-        if (valid) sample.push_back(box);
-    }
-    return sample;
-}
 
 Slabs slabs_across(int axis, const std::vector<Aabb>& sample, const std::vector<double>& fractions) {
     Slabs slabs;
@@ -70,7 +55,7 @@ SlabSpan Slabs::span_of(float min, float max) const noexcept {
 
 Slabs choose_slabs(View<const Aabb> boxes, const std::vector<double>& fractions) {
     Slabs best;
-    const std::vector<Aabb> sample = sample_of(boxes);
+    const std::vector<Aabb> sample = sample_of(boxes, std::min(sample_size, boxes.size()));
     if (sample.empty()) {
         best.cuts.assign(fractions.size() - 1, 0.0f);
         return best;
