@@ -16,7 +16,7 @@ const T* column_of(const T* column, const std::vector<std::uint32_t>& members, s
     return to.data();
 }
 
-// Boxes that reach into slab s, only into it and slabs behind it or not, by `take`.
+// Members of slab s, if `take` says so of the slabs that they reach into.
 template <class Take>
 std::vector<std::uint32_t> boxes_in(const SlabDeal& deal, std::size_t s, const Take& take) {
     std::vector<std::uint32_t> boxes;
@@ -99,8 +99,8 @@ void SlabWorker::find(const SlabTask& task, std::size_t s) {
     pairs_.clear();
     counts_ = {};
     slab_ = s;
-    if (task.counts_only) pairs_.count_only();
     if (task.counts_only) {
+        pairs_.count_only();
         count(task, s);
     } else {
         search(task, task.deal.members(s));

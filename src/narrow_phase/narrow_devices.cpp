@@ -183,13 +183,12 @@ void NarrowDevices::learn(std::size_t chunks) {
 
 void NarrowDevices::retire(const std::vector<Failure>& failures, bool done, NarrowReport& report) {
     for (const Failure& failure : failures) {
-        const std::string why = message_of(failure.why);
-        report.warnings.push_back("device '" + context_.infos[failure.device].name +
-                                  "' failed, its work was done again: " + why);
-        if (context_.retire(failure.device, why))
-            members_[failure.device].reset();
-        else if (!done)
-            std::rethrow_exception(failure.why);
+        if (!context_.retire(failure.device, message_of(failure.why))) {
+            if (!done) std::rethrow_exception(failure.why);
+            continue;
+        }
+        members_[failure.device].reset();
+        report.warnings.push_back(context_.why_retired(failure.device));
     }
 }
 
