@@ -19,6 +19,12 @@ struct PipelineOptions {
     /// Find the contacts of the pairs, too. Off: no narrow phase, and nothing of it is built, allocated or sent.
     bool contacts = false;
     NarrowPhaseOptions narrow_phase;
+    /// Broad and narrow phase at once: pairs go from one to the other in chunks and are not kept, so that memory for
+    /// them does not grow with their number: StepResult::pairs() is empty, and Report::stream tells what went by. Where
+    /// there are several devices some find pairs, as many as measured times say is best, and the others contacts; who
+    /// is done early helps. The contacts are, byte for byte, those of a step that does not stream. A step whose scene
+    /// has changed finds all pairs anew. Needs `contacts`; with events or a warm start it is InvalidArgument.
+    bool streaming = false;
     /// Start the narrow phase of each step from what decided the pairs in the last one: see WarmStart.
     bool warm_start = false;
 };
@@ -27,7 +33,7 @@ struct PipelineOptions {
 class StepResult {
 public:
     /// Candidate pairs of body indices: boxes overlap, or a box reaches into a plane, and the
-    /// filters of both bodies allow it. In the order BroadPhaseOptions asks for.
+    /// filters of both bodies allow it. In the order BroadPhaseOptions asks for. Empty with PipelineOptions::streaming.
     View<const Pair> pairs() const;
     /// With BroadPhaseOptions::events: the pairs that were not there, or are no longer there, after the step before,
     /// ascending. After a step that failed the last one before it counts.
@@ -38,7 +44,8 @@ public:
     /// the device when first asked for: 24 bytes a row.
     View<const Aabb> boxes() const;
     const Report& report() const noexcept;
-    /// With PipelineOptions::contacts: the contacts of pairs(), in their order; see NarrowPhase::find. Empty without.
+    /// With PipelineOptions::contacts: the contacts of pairs(), in their order (ascending with
+    /// PipelineOptions::streaming); see NarrowPhase::find. Empty without.
     View<const Contact> contacts() const noexcept;
     /// What the narrow phase did in this step; of a step in which nothing had changed the counts are those of the
     /// step that found the contacts, and the times are 0.
@@ -70,6 +77,9 @@ public:
 
     /// Forgets what PipelineOptions::warm_start has kept: the next step that finds contacts anew does so from nothing.
     void drop_warm_start() noexcept;
+
+    /// The library's own view; not for users.
+    StepResult::Impl& impl() const noexcept { return *impl_; }
 
 private:
     std::unique_ptr<StepResult::Impl> impl_;

@@ -42,6 +42,16 @@ struct DeviceWork {
     double ms = 0.0;           ///< wall time of its part, kernels built in it not counted
 };
 
+/// What went from the broad to the narrow phase in a step in which both were at work at once.
+struct StreamWork {
+    std::uint32_t broad_devices = 0;   ///< devices that found pairs; 0: the host did
+    std::uint32_t narrow_devices = 0;  ///< devices that had only contacts to find; the others did, too, when done
+    std::uint64_t chunks = 0;          ///< of pairs
+    std::uint64_t chunk_pairs = 0;     ///< pairs of a chunk, at most
+    std::uint64_t most_waiting = 0;    ///< chunks that waited for a device at one time, at most
+    std::uint64_t pair_bytes = 0;      ///< memory of the host for pairs, at most, whatever their number
+};
+
 /// Counts and times of the last step (or find).
 struct Report {
     std::uint64_t bodies = 0;  ///< rejected ones included
@@ -54,6 +64,7 @@ struct Report {
     Skipped skipped;
     std::vector<Rejection> rejected;      ///< ascending by body
     std::vector<DeviceWork> broad_split;  ///< of each device that had a part of the broad phase; empty: one had it all
+    StreamWork stream;                    ///< with PipelineOptions::streaming
     /// What went wrong and was made good: devices that failed, of which others then did the work. One line each.
     std::vector<std::string> warnings;
     std::uint64_t peak_device_bytes = 0;  ///< most memory held on devices so far, summed over them

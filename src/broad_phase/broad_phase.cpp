@@ -174,6 +174,15 @@ void BroadPhase::Impl::run(const detail::AlgorithmRow& row, detail::BoxInput& bo
     if (any_invalid && list_rejected) report.rejected = rejected_boxes(boxes.on_host());
 }
 
+void BroadPhase::Impl::stream(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
+                              const detail::FilterInput& filters, const detail::PairList::Taker& take,
+                              std::size_t piece, bool list_rejected) {
+    pairs.clear();
+    pairs.stream_to(take, piece);
+    run(row, boxes, filters, list_rejected);
+    pairs.clear();  // `take` ends here
+}
+
 bool BroadPhase::Impl::settle() {
     if (context.infos.empty() || made_on == context.primary()) return true;
     const bool first = made_on == nowhere;
@@ -344,16 +353,14 @@ std::uint64_t BroadPhase::stream(View<const Aabb> boxes, const std::function<voi
     std::exception_ptr too_late;  // pairs that were handed over cannot be taken back
     const std::uint64_t count = impl_->in_any_case([&] {
         detail::BoxInput input(boxes, impl_->staging);
-        impl_->pairs.clear();
         bool handed_over = false;
         const auto hand_over = [&](View<const Pair> pairs) {
             handed_over = true;
             take(pairs);
         };
-        const std::function<void(View<const Pair>)> taker = hand_over;
-        impl_->pairs.stream_to(taker, impl_->options.stream_bytes / sizeof(Pair));
         try {
-            impl_->run(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
+            impl_->stream(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, hand_over,
+                          impl_->options.stream_bytes / sizeof(Pair), true);
         } catch (...) {
             if (!handed_over) throw;
             too_late = std::current_exception();

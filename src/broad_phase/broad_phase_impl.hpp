@@ -65,6 +65,9 @@ struct BroadPhase::Impl {
     /// The same into `pairs` as it is set up.
     void run(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
              bool list_rejected);
+    /// The same pairs to `take`, at most `piece` at a time, from one device or the host.
+    void stream(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
+                const detail::PairList::Taker& take, std::size_t piece, bool list_rejected);
 
 private:
     static constexpr std::size_t nowhere = ~std::size_t{0};

@@ -188,6 +188,10 @@ void PairSink::collect(const std::vector<SinkLaunch>& launches, const FilterInpu
     // A call that fails, perhaps for want of the room that the last one took, leaves no guess.
     const std::uint64_t expected = std::exchange(expected_, 0);
     plan(std::max<std::uint64_t>(expected + expected / 8, bodies), all_workers, most);
+    if (pairs.streams() && expected > most && options_.max_pairs == std::numeric_limits<std::uint64_t>::max()) {
+        collect_all_pieces(parts, expected, {filters, bodies, pairs, counts, most});
+        return;
+    }
     Outcome outcome = run(parts, filters, bodies);
     check_limit(outcome.pairs, options_);
     const std::uint64_t found = outcome.pairs;
@@ -203,11 +207,7 @@ void PairSink::collect(const std::vector<SinkLaunch>& launches, const FilterInpu
         if (outcome.pairs + chunk_size_ * all_workers <= most) outcome = run(parts, filters, bodies);
     }
     if (!outcome.fits) {
-        std::vector<std::size_t> ends;
-        const Collection to{filters, bodies, pairs, counts, ends, most};
-        for (const Part& part : parts) collect_pieces(part, outcome.pairs, to);
-        if (options_.order == Order::Sorted) pairs.merge_runs(ends);
-        expected_ = found;
+        collect_all_pieces(parts, outcome.pairs, {filters, bodies, pairs, counts, most});
         return;
     }
     add(outcome, counts);
@@ -215,8 +215,15 @@ void PairSink::collect(const std::vector<SinkLaunch>& launches, const FilterInpu
     expected_ = found;
 }
 
+void PairSink::collect_all_pieces(const std::vector<Part>& parts, std::uint64_t expected, Collection to) {
+    const std::uint64_t before = to.pairs.size();
+    for (const Part& part : parts) collect_pieces(part, expected, to);
+    expected_ = to.pairs.size() - before;
+    if (options_.order == Order::Sorted) to.pairs.merge_runs(to.sorted_ends);
+}
+
 // The tasks of a part in pieces whose pairs fit, if there are `expected` pairs in it.
-void PairSink::collect_pieces(const Part& part, std::uint64_t expected, const Collection& to) {
+void PairSink::collect_pieces(const Part& part, std::uint64_t expected, Collection& to) {
     const std::uint64_t tasks = part.end - part.first;
     const std::uint64_t pieces = std::clamp<std::uint64_t>(expected / std::max<std::uint64_t>(to.most, 1) * 5 / 4 + 2,
                                                            std::min<std::uint64_t>(tasks, 2), tasks);
@@ -227,7 +234,7 @@ void PairSink::collect_pieces(const Part& part, std::uint64_t expected, const Co
 }
 
 // Takes the pairs of some tasks to the host; cuts the tasks further when the pairs do not fit.
-void PairSink::collect_piece(const Part& part, const Collection& to) {
+void PairSink::collect_piece(const Part& part, Collection& to) {
     Outcome outcome = run({part}, to.filters, to.bodies);
     if (!outcome.fits && part.end - part.first > 1) {
         collect_pieces(part, outcome.pairs, to);

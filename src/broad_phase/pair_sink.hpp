@@ -61,8 +61,8 @@ private:
         std::uint32_t bodies;
         PairList& pairs;
         FindCounts& counts;
-        std::vector<std::size_t>& sorted_ends;
         std::uint64_t most;
+        std::vector<std::size_t> sorted_ends{};
     };
     std::size_t groups_of(const Part& part) const;
     std::size_t workers_of(const std::vector<Part>& parts) const;
@@ -72,8 +72,9 @@ private:
     Outcome read_outcome(std::size_t header, std::size_t tails);
     void close_gaps(const Outcome& outcome);
     void deliver(const Outcome& outcome, std::uint32_t bodies, bool alone, PairList& pairs, FindCounts& counts);
-    void collect_pieces(const Part& part, std::uint64_t expected, const Collection& to);
-    void collect_piece(const Part& part, const Collection& to);
+    void collect_all_pieces(const std::vector<Part>& parts, std::uint64_t expected, Collection to);
+    void collect_pieces(const Part& part, std::uint64_t expected, Collection& to);
+    void collect_piece(const Part& part, Collection& to);
     static void add(const Outcome& outcome, FindCounts& counts);
     std::uint64_t most_pairs() const;
 

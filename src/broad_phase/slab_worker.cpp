@@ -74,7 +74,8 @@ void SlabWorker::search(const SlabTask& task, const std::vector<std::uint32_t>& 
     std::unique_ptr<BroadPhaseAlgorithm>& algorithm = made_[&task.row];
     if (!algorithm) algorithm = task.row.make(&device, options_);
     BoxInput input(device, send(device, task.boxes, members).handle(), 0, static_cast<std::uint32_t>(members.size()));
-    if (&members == &task.deal.members(slab_) && !task.filters.any()) name(device, task, input);
+    if (&members == &task.deal.members(slab_) && !task.filters.any() && task.taker == nullptr)
+        name(device, task, input);
     algorithm->find(input, filters_of(task.filters, members), pairs_, counts_);
     // One box alone is none that an algorithm looks at: the host does.
     counts_.invalid_boxes = counts_.invalid_boxes || members.size() == 1;
@@ -92,6 +93,30 @@ void SlabWorker::count(const SlabTask& task, std::size_t s) {
     counts_ = counts;
 }
 
+// Pairs piece by piece to where they go.
+void SlabWorker::stream(const SlabTask& task, std::size_t s) {
+    const std::vector<std::uint32_t>& members = task.deal.members(s);
+    const bool all = members.size() == task.deal.boxes() && task.deal.count() == 1;
+    found_ = 0;
+    taken_ms_ = 0.0;
+    const PairList::Taker take = [&](View<const Pair> pairs) {
+        if (!all) {
+            owned_.clear();
+            for (const Pair& pair : pairs)
+                if (const Pair named{members[pair.a], members[pair.b]}; task.deal.owner(named.a, named.b) == s)
+                    owned_.push_back(named);
+            pairs = {owned_.data(), owned_.size()};
+        }
+        found_ += pairs.size();
+        const Stopwatch away;
+        task.taker->take(device_, pairs);
+        taken_ms_ += away.ms();
+    };
+    pairs_.stream_to(take, task.taker->piece);
+    search(task, members);
+    pairs_.clear();  // `take` ends here
+}
+
 void SlabWorker::find(const SlabTask& task, std::size_t s) {
     const Stopwatch watch;
     Device& device = context_.open(device_);
@@ -102,11 +127,14 @@ void SlabWorker::find(const SlabTask& task, std::size_t s) {
     if (task.counts_only) {
         pairs_.count_only();
         count(task, s);
+    } else if (task.taker != nullptr) {
+        stream(task, s);
     } else {
         search(task, task.deal.members(s));
         found_ = pairs_.size();
     }
-    seconds_ = (watch.ms() - (device.report().build_ms - built_before)) / 1e3;
+    const double taken = task.taker != nullptr ? taken_ms_ : 0.0;
+    seconds_ = (watch.ms() - taken - (device.report().build_ms - built_before)) / 1e3;
 }
 
 }  // namespace clinch::detail

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
@@ -15,6 +16,14 @@
 
 namespace clinch::detail {
 
+/// Where the pairs of a call go that streams them.
+struct PairTaker {
+    /// Called with pairs that belong to the slab of device number `device`, in no order, as numbers of boxes; in the
+    /// thread of that device, those of several devices at once. May throw, which ends the slab.
+    std::function<void(std::size_t device, View<const Pair> pairs)> take;
+    std::size_t piece;  ///< pairs a device has at a time, at most
+};
+
 /// What all workers of a call are given.
 struct SlabTask {
     const AlgorithmRow& row;
@@ -22,6 +31,7 @@ struct SlabTask {
     const FilterInput& filters;
     const SlabDeal& deal;
     bool counts_only;
+    const PairTaker* taker = nullptr;  ///< else workers keep their pairs
 };
 
 /// Keeps its device's algorithms and buffers from call to call. One thread at a time; workers of different devices work
@@ -41,17 +51,18 @@ public:
 
     /// What was found.
     SlabList pairs() const noexcept { return {pairs_.view(), counts_.named}; }
-    /// How many pairs were found in the slab.
+    /// How many pairs were found in the slab; of a stream, those that belong to it.
     std::uint64_t found() const noexcept { return found_; }
     /// How many of them belong to it; only where they were counted.
     std::uint64_t counted() const noexcept { return counted_; }
     const FindCounts& counts() const noexcept { return counts_; }
-    /// Wall time of the last find(), without that of building kernels.
+    /// Wall time of the last find(), without that of building kernels and of who took the pairs of a stream.
     double seconds() const noexcept { return seconds_; }
     void forget_pairs() { pairs_.clear(); }
 
 private:
     void count(const SlabTask& task, std::size_t s);
+    void stream(const SlabTask& task, std::size_t s);
     void search(const SlabTask& task, const std::vector<std::uint32_t>& members);
     const Buffer& send(Device& device, View<const Aabb> boxes, const std::vector<std::uint32_t>& members);
     void name(Device& device, const SlabTask& task, BoxInput& input);
@@ -67,7 +78,8 @@ private:
     PairList pairs_;  // after `made_`, whose buffers it may map: it ends first
     FindCounts counts_;
     std::uint64_t found_ = 0, counted_ = 0;
-    double seconds_ = 0.0;
+    double seconds_ = 0.0, taken_ms_ = 0.0;
+    std::vector<Pair> owned_;  // of a piece of a stream
     std::vector<std::uint32_t> group_, mask_;
     std::vector<Motion> motion_;
 };

@@ -104,7 +104,8 @@ std::vector<double> BroadSplit::fractions_of(const std::vector<std::size_t>& cre
     for (std::size_t k = 0; k < crew.size(); ++k)
         fractions.push_back(forced_.empty() ? given_[crew[k]] : k < forced_.size() ? forced_[k] : 0.0);
     const double sum = std::accumulate(fractions.begin(), fractions.end(), 0.0);
-    for (double& fraction : fractions) fraction /= sum;
+    for (double& fraction : fractions)
+        fraction = sum > 0.0 ? fraction / sum : 1.0 / static_cast<double>(fractions.size());
     return fractions;
 }
 
@@ -127,7 +128,8 @@ bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& cr
     const std::vector<double> fractions = fractions_of(crew);
     if (crew == dealt_to_ && near(fractions, dealt_) && deal_.keep(boxes)) return true;
     const Slabs slabs = choose_slabs(boxes, fractions);
-    if (forced_.empty() && static_cast<double>(crew.size()) < least_speed_up * (1.0 + slabs.copies)) return false;
+    if (forced_.empty() && crew.size() > 1 && static_cast<double>(crew.size()) < least_speed_up * (1.0 + slabs.copies))
+        return false;
     dealt_to_.clear();  // until all went well
     deal_.deal(boxes, slabs);
     dealt_to_ = crew;
@@ -135,11 +137,15 @@ bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& cr
     return true;
 }
 
-bool BroadSplit::find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
-                      FindCounts& counts) {
+void BroadSplit::start_call() {
     warnings_.clear();
     for (std::size_t d = 0; d < context_.infos.size(); ++d)
         if (!context_.in_use(d)) shares_.retire(d);
+}
+
+bool BroadSplit::find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
+                      FindCounts& counts) {
+    start_call();
     const std::vector<std::size_t> crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
     if (!deal(on_host, crew)) return false;
@@ -233,8 +239,7 @@ void BroadSplit::throw_limit(const SlabTask& task) {
     throw Error(ErrorCode::LimitExceeded, "more pairs were found than are allowed (max_pairs)");
 }
 
-void BroadSplit::gather(bool counts_only, PairList& pairs, FindCounts& counts) {
-    SlabLists lists;
+void BroadSplit::add_counts(FindCounts& counts) const {
     for (const auto& worker : workers_) {
         const FindCounts& found = worker->counts();
         counts.box_tests += found.box_tests;
@@ -243,6 +248,38 @@ void BroadSplit::gather(bool counts_only, PairList& pairs, FindCounts& counts) {
         counts.still += found.still;
         counts.boxes_inside += found.boxes_inside;
         counts.invalid_boxes = counts.invalid_boxes || found.invalid_boxes;
+    }
+}
+
+std::uint64_t BroadSplit::stream(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters,
+                                 std::vector<std::size_t> crew, const PairTaker& taker, FindCounts& counts) {
+    start_call();
+    const View<const Aabb> on_host = boxes.on_host();
+    if (!deal(on_host, crew)) {
+        crew.resize(1);
+        deal(on_host, crew);
+    }
+    prepare(crew);
+    const SlabTask task{row, on_host, filters, deal_, false, &taker};
+    std::vector<std::size_t> which(workers_.size());
+    std::iota(which.begin(), which.end(), 0);
+    const std::vector<std::exception_ptr> thrown = run_once(task, which);
+    for (std::size_t s = 0; s < thrown.size(); ++s)
+        if (thrown[s] != nullptr && is_device_fault(thrown[s])) throw DeviceFault{workers_[s]->device(), thrown[s]};
+    for (const std::exception_ptr& error : thrown)
+        if (error != nullptr) std::rethrow_exception(error);
+    measure();
+    add_counts(counts);
+    std::uint64_t pairs = 0;
+    for (const auto& worker : workers_) pairs += worker->found();
+    check_limit(pairs, options_);
+    return pairs;
+}
+
+void BroadSplit::gather(bool counts_only, PairList& pairs, FindCounts& counts) {
+    add_counts(counts);
+    SlabLists lists;
+    for (const auto& worker : workers_) {
         if (counts_only) pairs.add_count(worker->counted());
         lists.push_back(worker->pairs());
     }

@@ -34,6 +34,11 @@ public:
     /// reach over the cuts that it does not pay.
     bool find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
               FindCounts& counts);
+    /// The same pairs, not kept but handed over as they are found, from `crew`, at least one device; how many. Leaves
+    /// one device that cannot do its part to the caller: throws DeviceFault. All else that is thrown leaves, too, first
+    /// what a device threw, else what `taker` threw.
+    std::uint64_t stream(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters,
+                         std::vector<std::size_t> crew, const PairTaker& taker, FindCounts& counts);
     /// For tests: shares of the devices, the primary first, in place of those that were measured.
     void force(std::vector<double> fractions) { forced_ = std::move(fractions); }
     /// What each device did in the last call.
@@ -55,6 +60,7 @@ private:
         std::array<double, 5> last_{};
         std::size_t count_ = 0;
     };
+    void start_call();
     std::vector<std::size_t> crew_for(const AlgorithmRow& row, std::uint64_t count) const;
     std::vector<double> fractions_of(const std::vector<std::size_t>& crew) const;
     bool deal(View<const Aabb> boxes, const std::vector<std::size_t>& crew);
@@ -65,6 +71,7 @@ private:
                                       const std::vector<std::exception_ptr>& thrown);
     [[noreturn]] void throw_limit(const SlabTask& task);
     void gather(bool counts_only, PairList& pairs, FindCounts& counts);
+    void add_counts(FindCounts& counts) const;
     void measure();
 
     Context::Impl& context_;

@@ -27,7 +27,8 @@ private:
 
 }  // namespace
 
-std::vector<std::exception_ptr> run_crew(std::size_t count, const std::function<void(std::size_t)>& work) {
+std::vector<std::exception_ptr> run_crew(std::size_t count, const std::function<void(std::size_t)>& work,
+                                         const std::function<void(std::size_t)>& without) {
     std::vector<std::exception_ptr> thrown(count);
     if (count == 0) return thrown;
     const auto run = [&](std::size_t k) {
@@ -45,6 +46,7 @@ std::vector<std::exception_ptr> run_crew(std::size_t count, const std::function<
             } catch (const std::system_error& error) {
                 thrown[k] = std::make_exception_ptr(
                     Error(ErrorCode::DeviceFailed, std::string("a host thread could not be started: ") + error.what()));
+                if (without) without(k);
             }
         }
         run(0);

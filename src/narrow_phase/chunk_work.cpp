@@ -85,9 +85,9 @@ void ChunkWork::decide(const NarrowCall& call) {
         if (open[k] == 0 || !worker_.in_float32(call, k)) continue;
         const BucketSlice again = slots_.undecided(k, open[k]);
         worker_.share().buckets[k].again += open[k];
-        // For a few the host is done before float64 kernels are built and fed.
-        constexpr std::uint32_t few_pairs = 1024;
-        if (worker_.info().fp64 && open[k] > few_pairs)
+        // On a CPU the host is as fast, and builds no kernel for it. Not by their number: chunks may be cut anywhere,
+        // and the two differ in last bits.
+        if (worker_.info().fp64 && worker_.info().type == DeviceType::Gpu)
             run_float64(call, k, again);
         else
             run_on_host(call, k, again);

@@ -119,10 +119,7 @@ bool NarrowDevices::find(const NarrowCall& call, NarrowResult& result, NarrowRep
     }
     if (done) {
         const Stopwatch finish;
-        const bool margins = std::any_of(crew.begin(), crew.end(), [&](std::size_t i) {
-            return members_[i] && members_[i]->worker().began() && members_[i]->worker().scene().has_margins();
-        });
-        if (margins) drop_beyond_margins(call.scene, result.contacts);
+        if (any_margins()) drop_beyond_margins(call.scene, result.contacts);
         report.ms.gather += finish.ms();
     }
     if (!failures.empty())
@@ -130,6 +127,28 @@ bool NarrowDevices::find(const NarrowCall& call, NarrowResult& result, NarrowRep
     else if (shares_ && fractions.empty() && chunks >= 2 * least_chunks)
         learn(chunks);
     return done;
+}
+
+bool NarrowDevices::any_margins() const {
+    return std::any_of(members_.begin(), members_.end(), [](const auto& member) {
+        return member && member->worker().began() && member->worker().scene().has_margins();
+    });
+}
+
+std::vector<std::size_t> NarrowDevices::begin_stream() {
+    start_call();
+    return alike();
+}
+
+void NarrowDevices::find_streamed(std::size_t device, const NarrowCall& call, NarrowResult& result) {
+    NarrowMember& one = member(device);
+    one.worker().timed([&] { one.append_chunk(call, 0, call.pairs.size(), result); });
+}
+
+bool NarrowDevices::finish_stream(NarrowReport& report) {
+    for (std::size_t i = 0; i < members_.size(); ++i)
+        if (members_[i] && members_[i]->worker().share().chunks > 0) add_to(report, i, 0);
+    return any_margins();
 }
 
 void NarrowDevices::find_on_one(const NarrowCall& call, std::size_t device, NarrowResult& result) {

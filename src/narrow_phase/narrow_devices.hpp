@@ -28,6 +28,13 @@ public:
     /// fail are taken out of use. True: the result is whole. False: all that worked on the call failed and others are
     /// left in the context; the result is undefined. Throws Error, that of the last device if none is left.
     bool find(const NarrowCall& call, NarrowResult& result, NarrowReport& report);
+    /// A call begins whose pairs come while it runs: the devices that may work on it, the primary one first.
+    std::vector<std::size_t> begin_stream();
+    /// What `device`, one of those, has of pairs of such a call, behind what `result` has. Opens it. In the thread of
+    /// the device; devices may be at it at once, each with a result of its own. Throws what went wrong.
+    void find_streamed(std::size_t device, const NarrowCall& call, NarrowResult& result);
+    /// When all pairs are done: adds to the report what each device did. Whether any pair has a margin.
+    bool finish_stream(NarrowReport& report);
     void shapes_changed() noexcept;
     /// After an error: everything is sent anew.
     void forget();
@@ -49,6 +56,7 @@ private:
     void find_on_one(const NarrowCall& call, std::size_t device, NarrowResult& result);
     bool find_on_several(const NarrowCall& call, const std::vector<std::size_t>& crew, NarrowResult& result,
                          std::vector<Failure>& failures, NarrowReport& report);
+    bool any_margins() const;
     void add_to(NarrowReport& report, std::size_t device, std::uint64_t stolen);
     void learn(std::size_t chunks);
     void retire(const std::vector<Failure>& failures, bool done, NarrowReport& report);

@@ -36,18 +36,14 @@ NarrowPhase::Impl::Impl(Context& c, const NarrowPhaseOptions& o)
     check_options(o);
 }
 
-// Few pairs are done on the host before a device has been told of them.
 bool NarrowPhase::Impl::worth_a_device(std::size_t pairs) const {
-    constexpr std::size_t few_pairs = 128;
     if (context.infos.empty() || pairs < few_pairs) return false;
     return context.infos[context.primary()].fp64 || settings.level != Level::Exact;
 }
 
-void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs, bool touching_only, WarmStart* from) {
-    const Stopwatch total;
+void NarrowPhase::Impl::begin(const Scene& scene) {
     result.clear();
     report = NarrowReport{};
-    report.pairs = pairs.size();
     for (const MatrixRow& row : matrix()) report.buckets.push_back({classes_text(row), row.module, {}, 0, 0});
     const Stopwatch upload;
     if (settings.shapes.update(scene)) {
@@ -55,6 +51,12 @@ void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs, bool to
         devices.shapes_changed();  // also where this call has no need of them
     }
     report.ms.upload = upload.ms();
+}
+
+void NarrowPhase::Impl::find(const Scene& scene, View<const Pair> pairs, bool touching_only, WarmStart* from) {
+    const Stopwatch total;
+    begin(scene);
+    report.pairs = pairs.size();
     try {
         find_somewhere({scene, pairs, touching_only, from != nullptr ? &from->impl() : nullptr});
     } catch (...) {
@@ -81,7 +83,7 @@ void NarrowPhase::Impl::find_somewhere(const NarrowCall& call) {
     }
     if (taken && call.warm != nullptr) call.warm->restore(0, call.pairs.size());
     report.warm = 0;
-    find_on_host({call.scene, call.pairs, call.only_pairs, nullptr});
+    find_on_host({call.scene, call.pairs, call.only_pairs, nullptr}, result);
 }
 
 void NarrowPhase::Impl::finish_report(bool touching_only) {
@@ -95,7 +97,7 @@ void NarrowPhase::Impl::finish_report(bool touching_only) {
         if (opened != nullptr) report.peak_device_bytes += opened->report().peak_bytes;
 }
 
-void NarrowPhase::Impl::find_on_host(const NarrowCall& call) {
+void NarrowPhase::Impl::find_on_host(const NarrowCall& call, NarrowResult& to) {
     const Stopwatch watch;
     RowTolerances tolerances{};
     for (const Pair& pair : call.pairs) {
@@ -116,9 +118,9 @@ void NarrowPhase::Impl::find_on_host(const NarrowCall& call) {
         if (!call.only_pairs && settings.options.contacts_per_pair > 1)
             points = manifolds_on_host(call.scene, settings.shapes, answers, settings.options.contacts_per_pair);
         chunk.take(std::move(answers), std::move(points));
-        result.append(call, chunk);
+        to.append(call, chunk);
     }
-    report.ms.routines = watch.ms();
+    report.ms.routines += watch.ms();
 }
 
 NarrowPhase::NarrowPhase(Context& context, const NarrowPhaseOptions& options)

@@ -21,9 +21,15 @@ struct NarrowPhase::Impl {
     NarrowReport report;
 
     void find(const Scene& scene, View<const Pair> pairs, bool touching_only, WarmStart* from);
+    /// A call begins: nothing is found yet, shapes are known.
+    void begin(const Scene& scene);
+    /// Fewer than this are done on the host before a device has been told of them.
+    static constexpr std::size_t few_pairs = 128;
     bool worth_a_device(std::size_t pairs) const;
     void find_somewhere(const detail::NarrowCall& call);
-    void find_on_host(const detail::NarrowCall& call);
+    /// Appends what the pairs have to `to`, and adds them to the report's buckets.
+    void find_on_host(const detail::NarrowCall& call, detail::NarrowResult& to);
+    /// When all is found.
     void finish_report(bool touching_only);
 };
 

@@ -6,71 +6,45 @@
 #include <utility>
 #include <vector>
 
-#include "src/broad_phase/broad_phase_impl.hpp"
-#include "src/broad_phase/planes.hpp"
 #include "src/device/failover.hpp"
 #include "src/device/stopwatch.hpp"
-#include "src/scene/bounds.hpp"
+#include "src/pipeline/pipeline_impl.hpp"
 #include "src/scene/scene_impl.hpp"
 
 namespace clinch {
 
-struct StepResult::Impl {
-    Impl(Context& context, const PipelineOptions& options)
-        : broad(context, without_events(options.broad_phase)),
-          measure(options.broad_phase.measure_stages),
-          tell_events(options.broad_phase.events),
-          starts_warm(options.warm_start),
-          result(*this) {
-        detail::check_options(context.impl(), options.broad_phase);
-        if (options.contacts) narrow.emplace(context, options.narrow_phase);
-    }
-    // Events are those of the pairs with planes, told here.
-    static BroadPhaseOptions without_events(BroadPhaseOptions options) {
-        options.events = false;
-        return options;
-    }
+namespace {
 
-    BroadPhase broad;
-    bool measure, tell_events, starts_warm;
-    detail::PairEvents events;
-    std::optional<detail::DeviceBounds> device_bounds;
-    std::optional<detail::HostBounds> host_bounds;
-    detail::PlanePairs planes;
-    std::uint64_t filter_version = 0;  // names the filters of a scene for the broad phase; 0: none seen
-    std::uint64_t scene_filter_version = 0;
-    std::shared_ptr<const int> scene_identity;
-    bool filters_changed = false;                 // since the last step
-    std::shared_ptr<const int> stepped_identity;  // of the scene of the last step, if it succeeded
-    std::uint64_t stepped_version = 0;
-    std::size_t stepped_rows = 0;
+// Events are those of the pairs with planes, told here.
+BroadPhaseOptions without_events(BroadPhaseOptions options) {
+    options.events = false;
+    return options;
+}
 
-    View<const Pair> pairs;
-    std::vector<Pair> merged;  // holds `pairs` when planes added to them
-    bool on_device = false;    // where the boxes of the last step are
-    std::size_t rows = 0;
-    std::optional<std::vector<Aabb>> boxes_read;
-    std::optional<NarrowPhase> narrow;  // if contacts are asked for
-    WarmStart kept;                     // if they start warm
-    View<const Contact> contacts;
-    NarrowReport narrow_report;
-    std::uint64_t most_contacts = 0;
-    Report report;
-    StepResult result;
+void check_streaming(const PipelineOptions& options) {
+    if (!options.streaming) return;
+    const char* const lack = !options.contacts            ? "contacts"
+                             : options.broad_phase.events ? "no events of pairs"
+                             : options.warm_start         ? "no warm start"
+                                                          : nullptr;
+    if (lack != nullptr)
+        throw Error(ErrorCode::InvalidArgument,
+                    std::string("streaming keeps no pairs: it goes together with ") + lack + " only");
+}
 
-    void step(const Scene& scene);
-    bool nothing_changed(const Scene& scene) const;
-    void step_again();
-    void start_afresh();
-    void leave_bounds();
-    View<const Pair> find_changed(const detail::AlgorithmRow& row, const detail::FilterInput& filters);
-    detail::FilterInput filters(const Scene& scene);
-    View<const Pair> find_on_device(const Scene& scene, const detail::AlgorithmRow& row, std::size_t& changed);
-    View<const Pair> find_on_host(const Scene& scene, const detail::AlgorithmRow& row, std::size_t& changed);
-    void add_plane_pairs(const Scene& scene);
-    void find_contacts(const Scene& scene);
-    View<const Aabb> boxes();
-};
+}  // namespace
+
+StepResult::Impl::Impl(Context& context, const PipelineOptions& options)
+    : broad(context, without_events(options.broad_phase)),
+      measure(options.broad_phase.measure_stages),
+      tell_events(options.broad_phase.events),
+      starts_warm(options.warm_start),
+      result(*this) {
+    detail::check_options(context.impl(), options.broad_phase);
+    check_streaming(options);
+    if (options.contacts) narrow.emplace(context, options.narrow_phase);
+    if (options.streaming) phases = std::make_unique<detail::PhaseStream>(context.impl(), broad.impl(), narrow->impl());
+}
 
 void StepResult::Impl::start_afresh() {
     device_bounds.reset();
@@ -106,20 +80,28 @@ detail::FilterInput StepResult::Impl::filters(const Scene& scene) {
     return {{columns.group.data(), columns.mask.data(), columns.motion.data()}, filter_version};
 }
 
-View<const Pair> StepResult::Impl::find_on_device(const Scene& scene, const detail::AlgorithmRow& row,
-                                                  std::size_t& changed) {
+// Makes the boxes of all rows on the primary device; how many rows had changed.
+std::size_t StepResult::Impl::make_boxes_on_device(const Scene& scene) {
     detail::Device& device = broad.impl().device();
     if (device_bounds && &device_bounds->device() != &device) leave_bounds();  // that device was retired
     if (!device_bounds) device_bounds.emplace(device);
     const detail::Stopwatch upload;
-    changed = device_bounds->upload(scene);
+    const std::size_t changed = device_bounds->upload(scene);
     if (measure) device.finish();
     report.ms.upload = upload.ms();
     const detail::Stopwatch bounds;
     device_bounds->compute();
     if (measure) device.finish();
     report.ms.bounds = bounds.ms();
-    return find_changed(row, filters(scene));
+    return changed;
+}
+
+std::size_t StepResult::Impl::make_boxes_on_host(const Scene& scene) {
+    if (!host_bounds) host_bounds.emplace();
+    const detail::Stopwatch bounds;
+    const std::size_t changed = host_bounds->update(scene);
+    report.ms.bounds = bounds.ms();
+    return changed;
 }
 
 // The pairs of the boxes on the device, by what the last upload changed if that pays.
@@ -138,20 +120,11 @@ View<const Pair> StepResult::Impl::find_changed(const detail::AlgorithmRow& row,
     return impl.find(row, input, filters, false);
 }
 
-View<const Pair> StepResult::Impl::find_on_host(const Scene& scene, const detail::AlgorithmRow& row,
-                                                std::size_t& changed) {
-    if (!host_bounds) host_bounds.emplace();
-    const detail::Stopwatch bounds;
-    changed = host_bounds->update(scene);
-    report.ms.bounds = bounds.ms();
-    detail::BoxInput input(host_bounds->boxes(), broad.impl().staging);
-    return broad.impl().find(row, input, filters(scene), false);
-}
-
-// Planes have no box; their pairs join those of the boxes here.
-void StepResult::Impl::add_plane_pairs(const Scene& scene) {
+// Planes have no box: their pairs are found here, and told in the report.
+const std::vector<Pair>& StepResult::Impl::find_plane_pairs(const Scene& scene) {
+    static const std::vector<Pair> none;
     const auto& plane_rows = scene.impl().plane_rows();
-    if (plane_rows.empty()) return;
+    if (plane_rows.empty()) return none;
     const detail::Stopwatch watch;
     const std::vector<detail::WorldPlane> in_world = detail::world_planes(scene, plane_rows);
     detail::FindCounts counts;
@@ -160,12 +133,18 @@ void StepResult::Impl::add_plane_pairs(const Scene& scene) {
                                                : planes.find(in_world, host_bounds->boxes(), filters(scene), counts);
     report.skipped.pairs_filtered += counts.pairs_filtered;
     report.skipped.static_pairs += counts.static_pairs;
-    if (!found.empty()) {
-        merged.resize(pairs.size() + found.size());
-        std::merge(pairs.begin(), pairs.end(), found.begin(), found.end(), merged.begin());
-        detail::check_limit(merged.size(), broad.impl().options);
-        pairs = merged;
-    }
+    report.ms.broad += watch.ms();
+    return found;
+}
+
+void StepResult::Impl::add_plane_pairs(const Scene& scene) {
+    const std::vector<Pair>& found = find_plane_pairs(scene);
+    if (found.empty()) return;
+    const detail::Stopwatch watch;
+    merged.resize(pairs.size() + found.size());
+    std::merge(pairs.begin(), pairs.end(), found.begin(), found.end(), merged.begin());
+    detail::check_limit(merged.size(), broad.impl().options);
+    pairs = merged;
     report.ms.broad += watch.ms();
 }
 
@@ -174,8 +153,7 @@ bool StepResult::Impl::nothing_changed(const Scene& scene) const {
            stepped_version == scene.version();
 }
 
-void StepResult::Impl::find_contacts(const Scene& scene) {
-    contacts = narrow->find(scene, pairs, starts_warm ? &kept : nullptr);
+void StepResult::Impl::take_contacts() {
     narrow_report = narrow->report();
     report.contacts = contacts.size();
     report.warnings.insert(report.warnings.end(), narrow_report.warnings.begin(), narrow_report.warnings.end());
@@ -195,6 +173,7 @@ void StepResult::Impl::step_again() {
     report.skipped.bounds = rows;
     report.skipped.unchanged = rows;
     report.broad_split.clear();
+    report.stream = {};
     report.warnings.clear();
     events.same_again();
 }
@@ -215,14 +194,34 @@ void StepResult::Impl::step(const Scene& scene) {
     report.rejected = scene.rejected();
     const detail::AlgorithmRow& row = broad.impl().choose(rows);
     on_device = row.needs_device;
-    std::size_t changed = 0;
-    pairs = on_device ? find_on_device(scene, row, changed) : find_on_host(scene, row, changed);
+    const std::size_t changed = on_device ? make_boxes_on_device(scene) : make_boxes_on_host(scene);
+    report.skipped.bounds = rows - std::min(rows, changed);
+    report.bodies = scene.body_count();
+    if (phases)
+        find_streamed(scene, row);
+    else
+        find_listed(scene, row);
+    if (tell_events) events.update(pairs);  // last, since a step that fails counts for none
+    stepped_identity = scene.impl().identity;
+    stepped_version = scene.version();
+    stepped_rows = rows;
+    report.ms.total = total.ms();
+}
 
+// The pairs, then their contacts.
+void StepResult::Impl::find_listed(const Scene& scene, const detail::AlgorithmRow& row) {
+    if (on_device) {
+        pairs = find_changed(row, filters(scene));
+    } else {
+        detail::BoxInput input(host_bounds->boxes(), broad.impl().staging);
+        pairs = broad.impl().find(row, input, filters(scene), false);
+    }
     const Report& found = broad.report();
     report.algorithm = found.algorithm;
     report.box_tests = found.box_tests;
+    const std::uint64_t bounds_skipped = report.skipped.bounds;
     report.skipped = found.skipped;
-    report.skipped.bounds = rows - std::min(rows, changed);
+    report.skipped.bounds = bounds_skipped;
     report.ms.broad = found.ms.broad;
     report.ms.download = found.ms.download;
     report.broad_split = found.broad_split;
@@ -230,14 +229,32 @@ void StepResult::Impl::step(const Scene& scene) {
     report.peak_device_bytes = found.peak_device_bytes;
     report.peak_host_bytes = found.peak_host_bytes;
     add_plane_pairs(scene);
-    report.bodies = scene.body_count();
     report.pairs = pairs.size();
-    if (narrow) find_contacts(scene);
-    if (tell_events) events.update(pairs);  // last, since a step that fails counts for none
-    stepped_identity = scene.impl().identity;
-    stepped_version = scene.version();
-    stepped_rows = rows;
-    report.ms.total = total.ms();
+    if (!narrow) return;
+    contacts = narrow->find(scene, pairs, starts_warm ? &kept : nullptr);
+    take_contacts();
+}
+
+// Pairs on their way to contacts; none is kept.
+void StepResult::Impl::find_streamed(const Scene& scene, const detail::AlgorithmRow& row) {
+    const std::vector<Pair>& with_planes = find_plane_pairs(scene);
+    detail::BoxInput boxes = on_device ? detail::BoxInput(device_bounds->device(), device_bounds->boxes().handle(), 0,
+                                                          static_cast<std::uint32_t>(rows))
+                                       : detail::BoxInput(host_bounds->boxes(), broad.impl().staging);
+    const detail::PhaseStream::Done done = phases->run({scene, row, boxes, filters(scene), with_planes});
+    contacts = narrow->impl().result.contacts.view();
+    take_contacts();
+    report.algorithm = row.name;
+    report.pairs = done.pairs;
+    report.box_tests = done.counts.box_tests;
+    report.skipped.inside = done.counts.boxes_inside;
+    report.skipped.still = done.counts.still;
+    report.skipped.pairs_filtered += done.counts.pairs_filtered;
+    report.skipped.static_pairs += done.counts.static_pairs;
+    report.stream = done.work;
+    report.ms.broad += done.broad_ms;
+    report.ms.narrow = narrow_report.ms.total = done.narrow_ms;
+    report.peak_host_bytes += done.work.pair_bytes;
 }
 
 View<const Aabb> StepResult::Impl::boxes() {

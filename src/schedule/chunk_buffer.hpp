@@ -53,15 +53,30 @@ public:
         return true;
     }
 
+    /// As put(), but does not wait: false, and the item stays, while the buffer is full. Once cancelled the item is
+    /// dropped, as put() does; cancelled() tells.
+    bool try_put(T& item) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (!cancelled_) {
+            if (items_.size() >= most_) return false;
+            items_.push_back(std::move(item));
+            most_held_ = std::max(most_held_, items_.size());
+            filled_.notify_one();
+        }
+        return true;
+    }
+
+    /// As take(), but does not wait: nullopt also while the buffer is empty.
+    std::optional<T> try_take() {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return take_first();
+    }
+
     /// Waits while the buffer is empty and a producer is not done. nullopt: all was taken, or cancelled().
     std::optional<T> take() {
         std::unique_lock<std::mutex> lock(mutex_);
         filled_.wait(lock, [this] { return cancelled_ || producers_ == 0 || !items_.empty(); });
-        if (cancelled_ || items_.empty()) return std::nullopt;
-        std::optional<T> item(std::move(items_.front()));
-        items_.pop_front();
-        emptied_.notify_one();
-        return item;
+        return take_first();
     }
 
     /// By either side: drops what is held and wakes everybody; put() and take() do nothing from now on.
@@ -115,6 +130,14 @@ public:
     };
 
 private:
+    std::optional<T> take_first() {
+        if (cancelled_ || items_.empty()) return std::nullopt;
+        std::optional<T> item(std::move(items_.front()));
+        items_.pop_front();
+        emptied_.notify_one();
+        return item;
+    }
+
     mutable std::mutex mutex_;
     std::condition_variable filled_, emptied_;
     std::deque<T> items_;

@@ -1,0 +1,129 @@
+#include "src/pipeline/phase_stream.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "src/device/crew.hpp"
+#include "src/pipeline/phase_run.hpp"
+
+namespace clinch::detail {
+namespace {
+
+BroadPhaseOptions unordered(BroadPhaseOptions options) {
+    options.order = Order::Any;  // contacts are put in order, not pairs
+    options.events = false;
+    return options;
+}
+
+bool has(const std::vector<std::size_t>& devices, std::size_t device) {
+    return std::find(devices.begin(), devices.end(), device) != devices.end();
+}
+
+// Rethrows the first that is not a mere consequence.
+void rethrow_cause(const std::vector<std::exception_ptr>& thrown) {
+    for (const std::exception_ptr& error : thrown) {
+        if (error == nullptr) continue;
+        try {
+            std::rethrow_exception(error);
+        } catch (const PhaseRun::Stopped&) {
+            continue;
+        }
+    }
+}
+
+}  // namespace
+
+PhaseStream::PhaseStream(Context::Impl& context, BroadPhase::Impl& broad, NarrowPhase::Impl& narrow)
+    : context_(context),
+      broad_(broad),
+      options_(unordered(broad.options)),
+      narrow_(narrow),
+      split_(context, options_) {}
+
+// `alike`: devices that may work on the narrow phase, the primary one first.
+PhaseRoles PhaseStream::roles_for(const AlgorithmRow& row, const std::vector<std::size_t>& alike,
+                                  std::uint64_t bodies) {
+    PhaseRoles roles{{}, alike, alike};
+    if (!row.needs_device) return roles;
+    // In the order in which they are given to the broad phase: those first that the other one has no use for.
+    std::vector<std::size_t> able;
+    const std::vector<std::size_t> crew = context_.crew();
+    for (const std::size_t device : crew)
+        if (!has(alike, device)) able.push_back(device);
+    const std::size_t unlike = able.size();
+    able.insert(able.end(), alike.rbegin(), alike.rend());
+    const auto units = static_cast<unsigned>(crew.size());
+    std::size_t wanted = 1;
+    if (units > 1) {
+        if (!balance_ || balanced_ != units) balance_.emplace(units, unlike > 0 && unlike < units ? unlike : 0);
+        balanced_ = units;
+        balance_->scene_size(bodies);
+        wanted = forced.broad_devices > 0 ? forced.broad_devices : balance_->broad_units();
+    }
+    const std::uint64_t worth = bodies / std::max<std::uint64_t>(1, context_.least_boxes_a_device);
+    wanted = std::max<std::size_t>(1, std::min<std::uint64_t>({wanted, worth, Slabs::most}));
+    if (!alike.empty() && units > 1) wanted = std::min<std::size_t>(wanted, units - 1);
+    for (const std::size_t device : able)
+        if (roles.broad.size() < wanted && runs_on(row, context_.infos[device])) roles.broad.push_back(device);
+    const auto taken = [&](std::size_t device) { return has(roles.broad, device); };
+    roles.narrow.erase(std::remove_if(roles.narrow.begin(), roles.narrow.end(), taken), roles.narrow.end());
+    return roles;
+}
+
+// Chunks enough for all devices to be done at about the same time, but none so small that it is all beginning.
+std::size_t PhaseStream::chunk_pairs(std::uint64_t expected) const {
+    constexpr std::uint64_t unknown = 16384, least = 4096, chunks_a_device = 8;
+    if (forced.chunk_pairs > 0) return std::max<std::size_t>(forced.chunk_pairs, NarrowStream::few_pairs);
+    if (expected == 0) return unknown;
+    const std::uint64_t chunks = chunks_a_device * std::max<std::size_t>(1, context_.crew().size());
+    return static_cast<std::size_t>(std::clamp<std::uint64_t>(expected / chunks, least, Slots::chunk_pairs));
+}
+
+void PhaseStream::find_pairs(const Step& step, const PhaseRoles& roles, PhaseRun& phases, FindCounts& counts) {
+    phases.take(phases.broad_place(), step.more_pairs);
+    if (!roles.broad.empty()) {
+        const auto take = [&](std::size_t device, View<const Pair> pairs) { phases.take(device, pairs); };
+        split_.stream(step.row, step.boxes, step.filters, roles.broad, {take, phases.piece()}, counts);
+        return;
+    }
+    const PairList::Taker take = [&](View<const Pair> pairs) { phases.take(PhaseRun::host, pairs); };
+    broad_.stream(step.row, step.boxes, step.filters, take, phases.piece(), false);
+    const Report& found = broad_.report;
+    counts.box_tests = found.box_tests;
+    counts.still = found.skipped.still;
+    counts.boxes_inside = found.skipped.inside;
+    counts.pairs_filtered = found.skipped.pairs_filtered;
+    counts.static_pairs = found.skipped.static_pairs;
+}
+
+PhaseStream::Done PhaseStream::run(const Step& step) {
+    const PhaseRoles roles = roles_for(step.row, narrow_.begin(step.scene), step.boxes.count());
+    // From the primary device, which is busy once the phases begin.
+    if (!roles.broad.empty()) step.boxes.on_host();
+    // After a step that failed nothing is expected.
+    PhaseRun phases(narrow_, roles, chunk_pairs(std::exchange(last_pairs_, 0)), !forced.no_help);
+    try {
+        rethrow_cause(phases.run([&](FindCounts& counts) { find_pairs(step, roles, phases, counts); }));
+        check_limit(phases.pairs(), options_);
+        narrow_.finish();
+    } catch (...) {
+        narrow_.abandon();
+        throw;
+    }
+    last_pairs_ = phases.pairs();
+    learn(phases, roles);
+    return Done{phases.counts(), phases.pairs(), phases.broad_ms(), phases.narrow_ms(), phases.work()};
+}
+
+// What each phase would have taken on its devices alone.
+void PhaseStream::learn(const PhaseRun& phases, const PhaseRoles& roles) {
+    if (!balance_ || roles.broad.empty() || balanced_ < 2) return;
+    if (forced.broad_devices > 0 || roles.broad.size() != balance_->broad_units()) return balance_->passed();
+    double broad_ms = 0.0;
+    for (const DeviceWork& work : split_.work()) broad_ms += work.ms;
+    balance_->measured(
+        {broad_ms / 1e3 / balance_->broad_units(), phases.narrow_work_ms() / 1e3 / balance_->narrow_units()});
+}
+
+}  // namespace clinch::detail
