@@ -88,7 +88,9 @@ public:
     /// them at a time (8 bytes a pair), so that memory does not grow with the result. A piece is valid during
     /// the call of `take`; with Order::Sorted the pairs of a piece ascend, but not from piece to piece.
     /// Returns the number of pairs. When there are more pairs than a piece holds, boxes are searched about twice: once
-    /// to count. More than max_pairs is LimitExceeded, maybe after some pieces. What `take` throws ends the call.
+    /// to count, unless the call before was a stream, too. Where several devices share the work, `take` is called in
+    /// their threads, but never twice at once. More than max_pairs is LimitExceeded, maybe after some pieces. What
+    /// `take` throws ends the call; so does a device that fails after the first piece.
     std::uint64_t stream(View<const Aabb> boxes, const std::function<void(View<const Pair>)>& take,
                          const FilterColumns& filters = {});
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <mutex>
 #include <sstream>
 #include <utility>
 
@@ -135,13 +136,23 @@ void BroadPhase::Impl::listed(std::uint64_t count) {
 // The pairs from all devices that they are worth; false if one device is to find them.
 bool BroadPhase::Impl::find_split(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
                                   const detail::FilterInput& filters, detail::FindCounts& counts) {
-    if (context.infos.size() < 2 || pairs.streams()) return false;
+    if (context.infos.size() < 2) return false;
     if (context.crew().size() < 2) {
         split.reset();
         return false;
     }
     if (!split) split = std::make_unique<detail::BroadSplit>(context, options);
-    if (!split->pays(row, boxes.count()) || !split->find(row, boxes, filters, pairs, counts)) return false;
+    if (!split->pays(row, boxes.count())) return false;
+    if (pairs.streams()) {
+        std::mutex one;  // at a time
+        const auto take = [&](std::size_t, View<const Pair> found) {
+            const std::lock_guard<std::mutex> lock(one);
+            pairs.append(found.data(), found.size());
+        };
+        split->stream(row, boxes, filters, {}, {take, pairs.piece()}, counts);
+    } else if (!split->find(row, boxes, filters, pairs, counts)) {
+        return false;
+    }
     report.broad_split = split->work();
     split->forget_pairs();
     report.warnings.insert(report.warnings.end(), split->warnings().begin(), split->warnings().end());
@@ -363,7 +374,7 @@ std::uint64_t BroadPhase::stream(View<const Aabb> boxes, const std::function<voi
                           impl_->options.stream_bytes / sizeof(Pair), true);
         } catch (...) {
             if (!handed_over) throw;
-            too_late = std::current_exception();
+            too_late = detail::cause_of(std::current_exception());
             return std::uint64_t{0};
         }
         return impl_->report.pairs;

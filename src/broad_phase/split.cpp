@@ -254,6 +254,7 @@ void BroadSplit::add_counts(FindCounts& counts) const {
 std::uint64_t BroadSplit::stream(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters,
                                  std::vector<std::size_t> crew, const PairTaker& taker, FindCounts& counts) {
     start_call();
+    if (crew.empty()) crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
     if (!deal(on_host, crew)) {
         crew.resize(1);
@@ -266,8 +267,11 @@ std::uint64_t BroadSplit::stream(const AlgorithmRow& row, BoxInput& boxes, const
     const std::vector<std::exception_ptr> thrown = run_once(task, which);
     for (std::size_t s = 0; s < thrown.size(); ++s)
         if (thrown[s] != nullptr && is_device_fault(thrown[s])) throw DeviceFault{workers_[s]->device(), thrown[s]};
-    for (const std::exception_ptr& error : thrown)
-        if (error != nullptr) std::rethrow_exception(error);
+    for (const std::exception_ptr& error : thrown) {
+        if (error == nullptr) continue;
+        if (is_limit(error)) throw_limit(task);
+        std::rethrow_exception(error);
+    }
     measure();
     add_counts(counts);
     std::uint64_t pairs = 0;

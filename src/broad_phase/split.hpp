@@ -34,9 +34,9 @@ public:
     /// reach over the cuts that it does not pay.
     bool find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
               FindCounts& counts);
-    /// The same pairs, not kept but handed over as they are found, from `crew`, at least one device; how many. Leaves
-    /// one device that cannot do its part to the caller: throws DeviceFault. All else that is thrown leaves, too, first
-    /// what a device threw, else what `taker` threw.
+    /// The same pairs, not kept but handed over as they are found, from the devices of `crew`, or, if that is empty,
+    /// those that pays() speaks of; how many. A device that fails is the caller's affair: throws DeviceFault. All else
+    /// that is thrown, by `taker`, too, leaves.
     std::uint64_t stream(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters,
                          std::vector<std::size_t> crew, const PairTaker& taker, FindCounts& counts);
     /// For tests: shares of the devices, the primary first, in place of those that were measured.

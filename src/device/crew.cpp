@@ -65,6 +65,16 @@ bool is_device_fault(const std::exception_ptr& thrown) {
     }
 }
 
+std::exception_ptr cause_of(const std::exception_ptr& thrown) {
+    try {
+        std::rethrow_exception(thrown);
+    } catch (const DeviceFault& fault) {
+        return fault.why;
+    } catch (...) {
+        return thrown;
+    }
+}
+
 double guessed_speed(const DeviceInfo& device) noexcept {
     const double lanes = device.type == DeviceType::Gpu ? 64.0 : device.lanes;
     return std::max(1.0, device.compute_units * lanes);

@@ -28,6 +28,9 @@ struct DeviceFault {
     std::exception_ptr why;
 };
 
+/// Of a DeviceFault why, else what was thrown.
+std::exception_ptr cause_of(const std::exception_ptr& thrown);
+
 /// How fast a device may be beside others, while nothing was measured.
 double guessed_speed(const DeviceInfo& device) noexcept;
 

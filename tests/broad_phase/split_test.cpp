@@ -91,7 +91,7 @@ TEST_CASE("200 random scenes on 2, 3 and 4 devices: the oracle's bytes with any 
     }
 }
 
-TEST_CASE("a split in any order has the same pairs, and a stream goes to one device", "[device][together]") {
+TEST_CASE("a split in any order has the same pairs", "[device][together]") {
     Context context = test::several(3);
     const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 4000, 5);
     const std::vector<Pair> expected = test::pairs_by_hand(boxes);
@@ -106,11 +106,52 @@ TEST_CASE("a split in any order has the same pairs, and a stream goes to one dev
         std::sort(pairs.begin(), pairs.end());
         CHECK(pairs == expected);
         CHECK(splitter.get().report().broad_split.size() == 3);
-        pairs.clear();
-        splitter.get().stream(boxes,
-                              [&](View<const Pair> piece) { pairs.insert(pairs.end(), piece.begin(), piece.end()); });
-        std::sort(pairs.begin(), pairs.end());
-        CHECK(pairs == expected);
+    }
+}
+
+TEST_CASE("a stream of several devices has every pair once, in pieces", "[device][together]") {
+    const std::uint64_t seed = 8;
+    INFO("seed " << seed);
+    test::Random random(seed);
+    Context context = test::several(3);
+    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 4000, 7);
+    const test::Filters filters = test::random_filters(boxes.size(), random);
+    const std::vector<Pair> all = test::pairs_by_hand(boxes), some = test::pairs_by_hand(boxes, filters.columns());
+    REQUIRE(some.size() < all.size());
+    for (const std::string& name : names_for(context)) {
+        INFO(name);
+        for (const std::size_t piece : {std::size_t{100}, all.size()}) {
+            BroadPhaseOptions options;
+            options.algorithm = name;
+            options.stream_bytes = piece * sizeof(Pair);
+            Splitter splitter(context, options);
+            for (const bool filtered : {false, false, true}) {  // the second knows how many the first had
+                splitter.force(random_fractions(3, random));
+                std::vector<Pair> pairs;
+                const std::uint64_t count = splitter.get().stream(
+                    boxes,
+                    [&](View<const Pair> found) {
+                        CHECK(found.size() <= piece);
+                        CHECK(std::is_sorted(found.begin(), found.end()));
+                        pairs.insert(pairs.end(), found.begin(), found.end());
+                    },
+                    filtered ? filters.columns() : FilterColumns{});
+                std::sort(pairs.begin(), pairs.end());
+                CHECK((pairs == (filtered ? some : all)));
+                CHECK(count == pairs.size());
+                CHECK(splitter.get().report().pairs == count);
+                CHECK(splitter.get().report().broad_split.size() == 3);
+            }
+            CHECK_THROWS_WITH(
+                splitter.get().stream(boxes, [](View<const Pair>) { throw std::runtime_error("enough"); }), "enough");
+            CHECK(splitter.get().find(boxes).size() == all.size());
+        }
+        BroadPhaseOptions options;
+        options.algorithm = name;
+        options.max_pairs = all.size() - 1;
+        Splitter limited(context, options);
+        CHECK_THROWS_WITH(limited.get().stream(boxes, [](View<const Pair>) {}),
+                          Catch::StartsWith("there are " + std::to_string(all.size()) + " pairs and at most "));
     }
 }
 
