@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bench/scenes/falling.hpp"
 #include "bench/scenes/random.hpp"
 #include "clinch/error.hpp"
 
@@ -104,9 +105,11 @@ constexpr std::array<KindRow, 1> kinds{{
 }  // namespace
 
 std::vector<BodyKind> body_kinds() {
+    const std::vector<FallingKind> falling = falling_kinds();
     std::vector<BodyKind> all;
-    all.reserve(kinds.size());
+    all.reserve(kinds.size() + falling.size());
     for (const KindRow& row : kinds) all.push_back(row.kind);
+    for (const FallingKind& row : falling) all.push_back(row.kind);
     return all;
 }
 
@@ -115,6 +118,10 @@ Scene make_bodies(const std::string& kind, std::size_t count, std::uint64_t seed
     for (const KindRow& row : kinds) {
         if (kind == row.kind.name) return row.make(count, seed);
         known += (known.empty() ? "" : ", ") + std::string(row.kind.name);
+    }
+    for (const FallingKind& falling : falling_kinds()) {
+        if (kind == falling.kind.name) return FallingBodies(kind, count, seed).scene();
+        known += ", " + std::string(falling.kind.name);
     }
     throw Error(ErrorCode::InvalidArgument, "'" + kind + "' is no kind of scene of bodies; " + known + " are accepted");
 }
