@@ -384,7 +384,7 @@ TEST_CASE("a call of one device that fails is done again on the next, until none
         CHECK(same_corners(warm, warm_one));
         CHECK(narrow.report().warnings.size() == 2);
         REQUIRE(narrow.report().devices.size() == 1);
-        CHECK(narrow.report().devices[0].index == 2);
+        CHECK(narrow.report().devices[0].device == 2);
         CHECK(same_bytes(test::found(narrow, input.scene, input.pairs), expected));
         CHECK(narrow.report().warnings.empty());
     }
