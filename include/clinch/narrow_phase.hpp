@@ -59,7 +59,7 @@ struct BucketReport {
 
 /// What one device did of a call.
 struct DeviceShare {
-    std::size_t index = 0;     ///< its place in Context::devices()
+    std::size_t device = 0;    ///< its place in Context::devices()
     std::uint64_t pairs = 0;   ///< candidates it looked at
     std::uint64_t chunks = 0;  ///< in so many chunks
     std::uint64_t stolen = 0;  ///< of those, dealt to another device that was slower than expected, or failed

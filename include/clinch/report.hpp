@@ -1,6 +1,7 @@
 // What a step did, and what it did not need to do.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -36,10 +37,10 @@ struct Skipped {
 
 /// What one device did in a step that was split over several.
 struct DeviceWork {
-    std::uint32_t device = 0;  ///< its place in Context::devices()
-    std::uint64_t boxes = 0;   ///< given to it; those at a border are given to the devices of both sides
-    std::uint64_t pairs = 0;   ///< found by it; those at a border may be found on both sides
-    double ms = 0.0;           ///< wall time of its part, kernels built in it not counted
+    std::size_t device = 0;   ///< its place in Context::devices()
+    std::uint64_t boxes = 0;  ///< given to it; those at a border are given to the devices of both sides
+    std::uint64_t pairs = 0;  ///< found by it; those at a border may be found on both sides
+    double ms = 0.0;          ///< wall time of its part, kernels built in it not counted
 };
 
 /// What went from the broad to the narrow phase in a step in which both were at work at once.

@@ -130,7 +130,10 @@ View<const Pair> BroadPhase::Impl::find(const detail::AlgorithmRow& row, detail:
 // `pairs` is the list of `count` boxes.
 void BroadPhase::Impl::listed(std::uint64_t count) {
     listed_boxes = count;
-    if (options.events) events.update(pairs.view());
+    if (!options.events) return;
+    events.update(pairs.view());
+    if (events_were_lost) report.warnings.emplace_back(events_lost);
+    events_were_lost = false;
 }
 
 // The pairs from all devices that they are worth; false if one device is to find them.
@@ -194,27 +197,25 @@ void BroadPhase::Impl::stream(const detail::AlgorithmRow& row, detail::BoxInput&
     pairs.clear();  // `take` ends here
 }
 
-bool BroadPhase::Impl::settle() {
-    if (context.infos.empty() || made_on == context.primary()) return true;
+void BroadPhase::Impl::settle() {
+    if (context.infos.empty() || made_on == context.primary()) return;
     const bool first = made_on == nowhere;
     made_on = context.primary();
-    return first || drop_device();
+    if (!first) drop_device();
 }
 
-bool BroadPhase::Impl::drop_device() {
+void BroadPhase::Impl::drop_device() {
     pairs.clear();
     made.clear();
     listed_boxes = 0;
-    bool events_known = true;
     try {
         leave_steps();
     } catch (const Error&) {  // the list before was on the device alone
         incremental.reset();
         events.start_afresh();
-        events_known = false;
+        events_were_lost = true;
     }
     staging = detail::Buffer();
-    return events_known;
 }
 
 bool BroadPhase::Impl::steps_pay(const detail::AlgorithmRow& row, std::uint64_t count, std::uint64_t changed) const {
@@ -310,7 +311,7 @@ auto BroadPhase::Impl::in_any_case(const Work& work) -> decltype(work()) {
     const auto result = detail::with_failover(
         context, warnings,
         [&] {
-            if (!settle()) warnings.emplace_back(events_lost);
+            settle();
             return work();
         },
         [] {});

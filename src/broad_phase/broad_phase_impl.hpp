@@ -55,9 +55,9 @@ struct BroadPhase::Impl {
     /// Runs `work`, and if the device fails in it once more on another one.
     template <class Work>
     auto in_any_case(const Work& work) -> decltype(work());
-    /// Before a call: what is kept is on the primary device, or given back. False if events begin from nothing then.
-    bool settle();
-    /// Said of that.
+    /// Before a call: what is kept is on the primary device, or given back. Events may begin from nothing then.
+    void settle();
+    /// Said of that in the report of the next list.
     static constexpr const char* events_lost =
         "the list of pairs before was lost with the device: all pairs are told as added";
     /// The last list once more, nothing having changed.
@@ -72,7 +72,8 @@ struct BroadPhase::Impl {
 private:
     static constexpr std::size_t nowhere = ~std::size_t{0};
     std::size_t made_on = nowhere;  // the device that all is kept on
-    bool drop_device();
+    bool events_were_lost = false;  // and no list has told it yet
+    void drop_device();
     bool find_split(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
                     detail::FindCounts& counts);
     void find_on_one(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,

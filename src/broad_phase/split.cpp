@@ -296,8 +296,8 @@ void BroadSplit::gather(bool counts_only, PairList& pairs, FindCounts& counts) {
 std::vector<DeviceWork> BroadSplit::work() const {
     std::vector<DeviceWork> work;
     for (std::size_t s = 0; s < workers_.size(); ++s)
-        work.push_back({static_cast<std::uint32_t>(workers_[s]->device()), deal_.members(s).size(),
-                        workers_[s]->found(), workers_[s]->seconds() * 1e3});
+        work.push_back(
+            {workers_[s]->device(), deal_.members(s).size(), workers_[s]->found(), workers_[s]->seconds() * 1e3});
     return work;
 }
 

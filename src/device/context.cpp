@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -17,7 +18,9 @@ detail::Device& Context::Impl::open(std::size_t i) {
     if (devices[i] == nullptr) {
         detail::FaultHook hook;
         if (fault_hook) hook = [ask = fault_hook, i](const char* call) { return ask(i, call); };
-        devices[i] = std::make_unique<detail::Device>(infos[i], ids[i], options, std::move(hook));
+        std::optional<detail::Slowdown> slowdown;
+        if (i < slowed.size()) slowdown.emplace(slowed[i]);
+        devices[i] = std::make_unique<detail::Device>(infos[i], ids[i], options, std::move(hook), std::move(slowdown));
     }
     return *devices[i];
 }

@@ -20,6 +20,9 @@ struct Context::Impl {
     /// it is. Devices may be worked on by a thread each; the test sees to it that the hook bears that.
     std::function<cl_int(std::size_t device, const char* call)> fault_hook;
 
+    /// For tests and benchmarks, as the hook: device i takes so many times as long as it does (see detail::Slowdown).
+    std::vector<double> slowed;
+
     /// A broad phase of fewer boxes than this for each device goes to fewer devices.
     std::uint64_t least_boxes_a_device = 50000;
     std::vector<std::string> retired;  // why device i is not used any more; empty: it is

@@ -67,9 +67,15 @@ struct Device::Impl {
     DeviceReport report;
     std::deque<std::vector<std::byte>> in_flight;  // host data of writes that nothing has waited for yet
     FaultHook fault_hook;
+    std::optional<Slowdown> slowdown;
 
-    Impl(const DeviceInfo& i, cl_device_id id, const ContextOptions& o, FaultHook hook)
-        : info(i), options(o), device(id), cache(cache_folder(o), o.log), fault_hook(std::move(hook)) {
+    Impl(const DeviceInfo& i, cl_device_id id, const ContextOptions& o, FaultHook hook, std::optional<Slowdown> slow)
+        : info(i),
+          options(o),
+          device(id),
+          cache(cache_folder(o), o.log),
+          fault_hook(std::move(hook)),
+          slowdown(std::move(slow)) {
         report.info = i;
         report.opened = true;
         for (const std::string& quirk : i.quirks)
@@ -85,6 +91,15 @@ struct Device::Impl {
     void ask(const char* call) const {
         const cl_int status = asked(fault_hook, call);
         if (status != CL_SUCCESS) throw compute::opencl_error(status);
+    }
+    // A command is given to the queue.
+    void begin() {
+        if (slowdown) slowdown->begin();
+    }
+    // All that was given to it is done.
+    void end() {
+        in_flight.clear();
+        if (slowdown) slowdown->end();
     }
     // Makes a call, which is named in the error if it fails.
     template <class Call>
@@ -199,8 +214,9 @@ const compute::program& Device::Impl::program(const std::string& module, const s
     return programs.emplace(module + ' ' + build_options, *program).first->second;
 }
 
-Device::Device(const DeviceInfo& info, cl_device_id id, const ContextOptions& options, FaultHook fault_hook)
-    : impl_(std::make_unique<Impl>(info, id, options, std::move(fault_hook))) {
+Device::Device(const DeviceInfo& info, cl_device_id id, const ContextOptions& options, FaultHook fault_hook,
+               std::optional<Slowdown> slowdown)
+    : impl_(std::make_unique<Impl>(info, id, options, std::move(fault_hook), std::move(slowdown))) {
     checked("opening device '" + info.name + "'", [&] {
         impl_->ask("clCreateContext");
         impl_->context = compute::context(impl_->device);
@@ -211,7 +227,7 @@ Device::Device(const DeviceInfo& info, cl_device_id id, const ContextOptions& op
 
 Device::Device(const DeviceInfo& info, cl_device_id id, cl_context context, cl_command_queue queue,
                const ContextOptions& options)
-    : impl_(std::make_unique<Impl>(info, id, options, FaultHook())) {
+    : impl_(std::make_unique<Impl>(info, id, options, FaultHook(), std::nullopt)) {
     impl_->context = compute::context(context);
     impl_->queue = compute::command_queue(queue);
 }
@@ -272,9 +288,11 @@ void Device::write(const Buffer& buffer, const void* data, std::size_t bytes, st
         write_later(buffer, {first, first + bytes}, offset);
         return;
     }
+    impl_->begin();
     impl_->make("clEnqueueWriteBuffer", [&] {
         return clEnqueueWriteBuffer(queue(), buffer.handle(), CL_TRUE, offset, bytes, data, 0, nullptr, nullptr);
     });
+    impl_->end();
 }
 
 // The queue reads the data some time before the next command that is waited for is done.
@@ -282,6 +300,7 @@ void Device::write_later(const Buffer& buffer, std::vector<std::byte> data, std:
     if (impl_->in_flight.size() >= most_in_flight) finish();
     impl_->in_flight.push_back(std::move(data));
     const std::vector<std::byte>& kept = impl_->in_flight.back();
+    impl_->begin();
     impl_->make("clEnqueueWriteBuffer", [&] {
         return clEnqueueWriteBuffer(queue(), buffer.handle(), CL_FALSE, offset, kept.size(), kept.data(), 0, nullptr,
                                     nullptr);
@@ -290,10 +309,11 @@ void Device::write_later(const Buffer& buffer, std::vector<std::byte> data, std:
 
 void Device::read(cl_mem memory, void* data, std::size_t bytes, std::size_t offset) {
     if (bytes == 0) return;
+    impl_->begin();
     impl_->make("clEnqueueReadBuffer", [&] {
         return clEnqueueReadBuffer(queue(), memory, CL_TRUE, offset, bytes, data, 0, nullptr, nullptr);
     });
-    impl_->in_flight.clear();
+    impl_->end();
 }
 
 void Device::read(const Buffer& buffer, void* data, std::size_t bytes, std::size_t offset) {
@@ -307,6 +327,7 @@ void Device::clear(const Buffer& buffer, std::size_t bytes) {
         return;
     }
     const cl_uint zero = 0;
+    impl_->begin();
     impl_->make("clEnqueueFillBuffer", [&] {
         return clEnqueueFillBuffer(queue(), buffer.handle(), &zero, sizeof zero, 0, bytes, 0, nullptr, nullptr);
     });
@@ -316,12 +337,13 @@ Mapping Device::map_for(cl_map_flags flags, const Buffer& buffer, std::size_t by
     Mapping mapping;
     if (bytes == 0) return mapping;
     void* pointer = nullptr;
+    impl_->begin();
     impl_->make("clEnqueueMapBuffer", [&] {
         cl_int status = CL_SUCCESS;
         pointer = clEnqueueMapBuffer(queue(), buffer.handle(), CL_TRUE, flags, 0, bytes, 0, nullptr, nullptr, &status);
         return status;
     });
-    impl_->in_flight.clear();
+    impl_->end();
     mapping.device_ = this;
     mapping.memory_ = buffer.handle();
     mapping.pointer_ = pointer;
@@ -379,6 +401,7 @@ void Device::add_module(const std::string& module, const std::string& source) {
 void Device::launch(const Kernel& kernel, std::size_t groups, std::size_t group_size) {
     if (groups == 0) return;
     const std::size_t items = groups * group_size;
+    impl_->begin();
     const cl_int status = attempt(impl_->fault_hook, "clEnqueueNDRangeKernel", [&] {
         return clEnqueueNDRangeKernel(queue(), kernel.handle(), 1, nullptr, &items, &group_size, 0, nullptr, nullptr);
     });
@@ -394,7 +417,7 @@ void Device::launch_items(const Kernel& kernel, std::size_t items) {
 
 void Device::finish() {
     impl_->make("clFinish", [&] { return clFinish(queue()); });
-    impl_->in_flight.clear();
+    impl_->end();
 }
 
 DeviceReport Device::report() const {

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "clinch/device.hpp"
 #include "clinch/error.hpp"
 #include "src/device/fault_hook.hpp"
+#include "src/device/slowdown.hpp"
 
 namespace clinch::detail {
 
@@ -148,8 +150,10 @@ private:
 /// An opened device. Commands run in order; only the functions that say so wait.
 class Device {
 public:
-    /// Opens `info`'s device `id` in a context and queue of its own, or in the caller's. `fault_hook` is for tests.
-    Device(const DeviceInfo& info, cl_device_id id, const ContextOptions& options, FaultHook fault_hook = {});
+    /// Opens `info`'s device `id` in a context and queue of its own, or in the caller's. `fault_hook` and `slowdown`
+    /// are for tests and benchmarks.
+    Device(const DeviceInfo& info, cl_device_id id, const ContextOptions& options, FaultHook fault_hook = {},
+           std::optional<Slowdown> slowdown = {});
     Device(const DeviceInfo& info, cl_device_id id, cl_context context, cl_command_queue queue,
            const ContextOptions& options);
     ~Device();

@@ -11,54 +11,16 @@
 #include "clinch/pipeline.hpp"
 #include "src/broad_phase/broad_phase_impl.hpp"
 #include "tests/broad_phase/every_algorithm.hpp"
+#include "tests/device/crew_faults.hpp"
 #include "tests/device/devices.hpp"
-#include "tests/device/faults.hpp"
 
 using namespace clinch;
-using test::Faults;
+using test::Failing;
+using test::from_call;
 
 namespace {
 
 constexpr std::uint32_t devices = 3;
-
-// From a call on, one of a device fails, and all after it.
-Faults::Choice from_call(std::size_t device, std::size_t number) {
-    return [=, seen = std::size_t{0}](std::size_t d, const std::string&, std::size_t) mutable {
-        return d == device && seen++ >= number;
-    };
-}
-
-// A context of several devices whose calls can be made to fail; fresh again at each reset().
-struct Failing {
-    Context context = test::several(devices);
-    Faults faults{context};
-    Failing() { context.impl().least_boxes_a_device = 1; }
-    void reset(bool closed) {
-        faults.watch();
-        context.impl().retired.clear();
-        if (closed)
-            for (auto& device : context.impl().devices) device.reset();
-    }
-    // Calls that each device makes in `work`.
-    template <class Work>
-    std::vector<std::size_t> count(const Work& work) {
-        std::vector<std::size_t> counts(devices, 0);
-        faults.fail(
-            [&](std::size_t d, const std::string&, std::size_t) {
-                ++counts[d];
-                return false;
-            },
-            CL_SUCCESS);
-        work();
-        faults.watch();
-        return counts;
-    }
-    std::size_t retired() const {
-        const auto& list = context.impl().retired;
-        return static_cast<std::size_t>(
-            std::count_if(list.begin(), list.end(), [](const std::string& why) { return !why.empty(); }));
-    }
-};
 
 void check_report(const Report& report, std::size_t device) {
     REQUIRE(report.warnings.size() == 1);
@@ -66,19 +28,12 @@ void check_report(const Report& report, std::size_t device) {
     CHECK_THAT(report.warnings[0], Catch::Contains("failed"));
 }
 
-// Numbers of calls to fail at: some of `count`, the first and last among them.
-std::vector<std::size_t> numbers_of(std::size_t count, std::size_t most, test::Random& random) {
-    std::vector<std::size_t> numbers{0, count - 1};
-    while (numbers.size() < std::min(most, count)) numbers.push_back(random.below(count));
-    return numbers;
-}
-
 }  // namespace
 
 TEST_CASE("a device that fails in a split search is retired and the pairs are whole", "[device]") {
     constexpr std::uint64_t seed = 61;
     test::Random random(seed);
-    Failing failing;
+    Failing failing(devices);
     // llvmpipe, which has a quirk, compiles each kernel object anew.
     const std::size_t most = failing.context.devices()[0].quirks.empty() ? 8 : 3;
     const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 3000, seed);
@@ -95,7 +50,7 @@ TEST_CASE("a device that fails in a split search is retired and the pairs are wh
             });
             for (std::size_t device = 0; device < devices; ++device) {
                 REQUIRE(calls[device] > 5);
-                for (const std::size_t number : numbers_of(calls[device], closed ? 3 : most, random)) {
+                for (const std::size_t number : test::numbers_of(calls[device], closed ? 3 : most, random)) {
                     INFO(name << ", device " << device << (closed ? ", closed," : "") << " fails from call " << number
                               << " of " << calls[device] << ", seed " << seed);
                     failing.reset(closed);
@@ -116,7 +71,7 @@ TEST_CASE("a device that fails in a split search is retired and the pairs are wh
 }
 
 TEST_CASE("when all devices fail, the call does, and the last one is asked again", "[device]") {
-    Failing failing;
+    Failing failing(devices);
     const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 2000, 3);
     BroadPhaseOptions options;
     options.algorithm = "grid";
@@ -133,7 +88,7 @@ TEST_CASE("when all devices fail, the call does, and the last one is asked again
 }
 
 TEST_CASE("a search on one device goes to the next when it fails", "[device]") {
-    Failing failing;
+    Failing failing(devices);
     failing.context.impl().least_boxes_a_device = 1000000;
     const std::vector<Aabb> boxes = scenes::make_boxes("density", 12000, 4);
     const std::vector<Pair> expected = test::pairs_by_sweep(boxes);
@@ -173,7 +128,7 @@ TEST_CASE("a search on one device goes to the next when it fails", "[device]") {
 }
 
 TEST_CASE("a step of a pipeline goes to other devices when one fails", "[device][together]") {
-    Failing failing;
+    Failing failing(devices);
     failing.context.impl().least_boxes_a_device = 1000;
     Scene scene;
     const ShapeId ball = scene.add_shape(Sphere{0.6});
@@ -204,7 +159,7 @@ TEST_CASE("a step of a pipeline goes to other devices when one fails", "[device]
     const std::uint64_t seed = 9;
     test::Random numbers(seed);
     for (std::size_t device = 0; device < devices; ++device)
-        for (const std::size_t number : numbers_of(calls[device], 10, numbers)) {
+        for (const std::size_t number : test::numbers_of(calls[device], 10, numbers)) {
             INFO("device " << device << " fails from call " << number << " of " << calls[device] << ", seed " << seed);
             failing.reset(false);
             Pipeline pipeline(failing.context, options);
@@ -217,7 +172,7 @@ TEST_CASE("a step of a pipeline goes to other devices when one fails", "[device]
 }
 
 TEST_CASE("what was kept on a device that a split has retired is not used again", "[device]") {
-    Failing failing;
+    Failing failing(devices);
     const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 3000, 12);
     const std::vector<Pair> expected = test::pairs_by_hand(boxes);
     const std::size_t first = failing.context.impl().primary();
@@ -246,7 +201,7 @@ TEST_CASE("what was kept on a device that a split has retired is not used again"
 }
 
 TEST_CASE("a step after its narrow phase has retired a device begins on another one", "[device]") {
-    Failing failing;
+    Failing failing(devices);
     failing.context.impl().least_boxes_a_device = 1000000;
     const std::size_t first = failing.context.impl().primary();
     Scene scene;

@@ -84,6 +84,9 @@ TEST_CASE("200 random scenes on 2, 3 and 4 devices: the oracle's bytes with any 
             const Report& report = splitter.get().report();
             CHECK(report.pairs == expected.size());
             CHECK(report.broad_split.size() == devices);
+            std::vector<bool> there(devices, false);
+            for (const DeviceWork& work : report.broad_split) there.at(work.device) = true;
+            CHECK(there == std::vector<bool>(devices, true));
             CHECK(report.rejected.empty());
             CHECK(report.warnings.empty());
             if (round % 4 == 0) CHECK(splitter.get().count(boxes, columns) == expected.size());

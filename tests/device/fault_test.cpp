@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -22,15 +21,13 @@
 
 using namespace clinch;
 using test::Faults;
+using test::faults_of_a_name;
+using test::few_classes;
+using test::first_device;
+using test::move_some;
 using test::Trial;
 
 namespace {
-
-ContextOptions first_device() {
-    ContextOptions options;
-    options.devices.indices = {0};
-    return options;
-}
 
 // An empty folder that goes with the test.
 class Folder {
@@ -89,11 +86,6 @@ bool logged(const Opened& opened, const std::string& text) {
                        [&](const std::string& line) { return line.find(text) != std::string::npos; });
 }
 
-// Faults to try of each kind of call: `wanted`, but fewer on llvmpipe, which compiles every kernel object anew.
-std::size_t faults_of_a_name(const Context& context, std::size_t wanted) {
-    return context.devices()[0].quirks.empty() ? wanted : 2;
-}
-
 // Boxes with filters, among which a fourth cannot move.
 struct Boxes {
     std::vector<Aabb> boxes;
@@ -119,37 +111,6 @@ BroadPhaseOptions with_algorithm(const std::string& name) {
     BroadPhaseOptions options;
     options.algorithm = name;
     return options;
-}
-
-// Bodies of a few classes, so that few kernels are built, and a plane.
-Scene few_classes(std::size_t n, std::uint64_t seed) {
-    test::Random random(seed);
-    Scene scene;
-    std::vector<ShapeId> shapes;
-    for (const std::size_t kind : {0u, 1u, 1u, 2u, 6u})
-        shapes.push_back(scene.add_shape(test::random_shape(kind, random)));
-    scene.add_body({scene.add_shape(Plane{{0, 0, 1}, 0.3}), Pose{}});
-    const double edge = 0.7 * std::cbrt(static_cast<double>(n));
-    for (std::size_t i = 0; i < n; ++i) {
-        Body body;
-        body.shape = shapes[i % shapes.size()];
-        body.pose.position = {random.between(0, edge), random.between(0, edge), random.between(0, edge)};
-        body.pose.rotation = test::random_rotation(random);
-        body.margin = i % 7 == 0 ? 0.05 : 0.0;
-        body.group = i % 11 == 0 ? 2u : 1u;
-        scene.add_body(body);
-    }
-    return scene;
-}
-
-void move_some(Scene& scene, std::uint64_t seed) {
-    test::Random random(seed);
-    for (std::uint32_t i = 1; i < scene.row_count(); i += 9) {
-        Pose pose = scene.body({i}).pose;
-        pose.position.x += random.between(-0.1, 0.1);
-        pose.rotation = test::random_rotation(random);
-        scene.set_pose({i}, pose);
-    }
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,12 @@
 #include "clinch/view.hpp"
 #include "src/device/context_impl.hpp"
 #include "tests/random.hpp"
+#include "tests/watchdog.hpp"
 
 namespace clinch::test {
 
-/// Counts the OpenCL calls of a context's devices, on whatever threads they are made, and has some of them fail.
+/// Counts the OpenCL calls of a context's devices, on whatever threads they are made, and has some of them fail. A
+/// watchdog runs, anew from each watch() or fail(): no failure may hang what is asked of the devices.
 class Faults {
 public:
     /// Whether a call is to fail: its device, its name, and its number among those of this name
@@ -39,6 +42,7 @@ public:
     void watch() { fail({}, CL_SUCCESS); }
     /// From now on calls are counted anew, and those chosen fail with `status`.
     void fail(Choice choice, cl_int status) {
+        watchdog_.emplace();
         const std::lock_guard<std::mutex> lock(mutex_);
         choice_ = std::move(choice);
         status_ = status;
@@ -64,6 +68,11 @@ public:
     /// Name of the first call that failed; empty: none has.
     std::string failed() const {
         const std::lock_guard<std::mutex> lock(mutex_);
+        return failed_.empty() ? std::string() : failed_.front();
+    }
+    /// Names of all that failed.
+    std::vector<std::string> all_failed() const {
+        const std::lock_guard<std::mutex> lock(mutex_);
         return failed_;
     }
 
@@ -73,7 +82,7 @@ private:
         calls_.emplace_back(name);
         const std::size_t number = counts_[name]++;
         if (!choice_ || !choice_(device, calls_.back(), number)) return CL_SUCCESS;
-        if (failed_.empty()) failed_ = calls_.back();
+        failed_.push_back(calls_.back());
         return status_;
     }
     mutable std::mutex mutex_;
@@ -81,8 +90,21 @@ private:
     cl_int status_ = CL_SUCCESS;
     std::vector<std::string> calls_;
     std::map<std::string, std::size_t> counts_;  // of each name
-    std::string failed_;
+    std::vector<std::string> failed_;
+    std::optional<Watchdog> watchdog_{std::in_place};
 };
+
+/// For a context of one device.
+inline ContextOptions first_device() {
+    ContextOptions options;
+    options.devices.indices = {0};
+    return options;
+}
+
+/// Faults to try of each kind of call: `wanted`, but fewer on llvmpipe, which compiles every kernel object anew.
+inline std::size_t faults_of_a_name(const Context& context, std::size_t wanted) {
+    return context.devices()[0].quirks.empty() ? wanted : 2;
+}
 
 /// What the message of an Error holds when a call of this name has failed.
 inline std::string told_of(const std::string& call) {
@@ -94,13 +116,18 @@ inline std::string told_of(const std::string& call) {
     return call;
 }
 
-/// An Error for a call that failed with `status` says so.
-inline void check_told(const Error& error, const std::string& call, cl_int status) {
+/// An Error for one of `calls`, which failed with `status`, says so.
+inline void check_told(const Error& error, const std::vector<std::string>& calls, cl_int status) {
     INFO(error.what());
     const bool short_of = status == CL_OUT_OF_RESOURCES || status == CL_MEM_OBJECT_ALLOCATION_FAILURE;
     CHECK(error.code() == (short_of ? ErrorCode::OutOfMemory : ErrorCode::DeviceFailed));
     CHECK(error.opencl_status() == status);
-    CHECK(std::string(error.what()).find(told_of(call)) != std::string::npos);
+    const std::string what = error.what();
+    CHECK(std::any_of(calls.begin(), calls.end(),
+                      [&](const std::string& call) { return what.find(told_of(call)) != std::string::npos; }));
+}
+inline void check_told(const Error& error, const std::string& call, cl_int status) {
+    check_told(error, std::vector<std::string>{call}, status);
 }
 
 struct Fault {

@@ -74,6 +74,37 @@ inline Scene random_bodies(std::size_t n, double edge, Vec3 centre, Random& rand
     return scene;
 }
 
+/// Bodies of a few classes, so that few kernels are built, and a plane.
+inline Scene few_classes(std::size_t n, std::uint64_t seed) {
+    Random random(seed);
+    Scene scene;
+    std::vector<ShapeId> shapes;
+    for (const std::size_t kind : {0u, 1u, 1u, 2u, 6u}) shapes.push_back(scene.add_shape(random_shape(kind, random)));
+    scene.add_body({scene.add_shape(Plane{{0, 0, 1}, 0.3}), Pose{}});
+    const double edge = 0.7 * std::cbrt(static_cast<double>(n));
+    for (std::size_t i = 0; i < n; ++i) {
+        Body body;
+        body.shape = shapes[i % shapes.size()];
+        body.pose.position = {random.between(0, edge), random.between(0, edge), random.between(0, edge)};
+        body.pose.rotation = random_rotation(random);
+        body.margin = i % 7 == 0 ? 0.05 : 0.0;
+        body.group = i % 11 == 0 ? 2u : 1u;
+        scene.add_body(body);
+    }
+    return scene;
+}
+
+/// Moves and turns every ninth body, but the first.
+inline void move_some(Scene& scene, std::uint64_t seed) {
+    Random random(seed);
+    for (std::uint32_t i = 1; i < scene.row_count(); i += 9) {
+        Pose pose = scene.body({i}).pose;
+        pose.position.x += random.between(-0.1, 0.1);
+        pose.rotation = random_rotation(random);
+        scene.set_pose({i}, pose);
+    }
+}
+
 /// All pairs a < b of bodies, but those of two planes.
 inline std::vector<Pair> all_pairs(const Scene& scene) {
     const auto is_plane = [&](std::uint32_t row) {

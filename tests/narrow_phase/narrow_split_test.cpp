@@ -14,6 +14,7 @@
 #include "src/narrow_phase/warm_start_impl.hpp"
 #include "tests/device/devices.hpp"
 #include "tests/narrow_phase/narrow_scenes.hpp"
+#include "tests/watchdog.hpp"
 
 using namespace clinch;
 using test::same_bytes;
@@ -336,6 +337,7 @@ struct ShortOfMemory {
 }  // namespace
 
 TEST_CASE("what a device that fails has left is done by the others", "[device][builds]") {
+    const test::Watchdog watchdog;
     INFO("seed 136");
     const ShortOfMemory input;
     Context alone = several(0, 1);
@@ -360,6 +362,7 @@ TEST_CASE("what a device that fails has left is done by the others", "[device][b
 }
 
 TEST_CASE("a call of one device that fails is done again on the next, until none is left", "[device][builds]") {
+    const test::Watchdog watchdog;
     INFO("seed 136");
     const ShortOfMemory input;
     Context alone = several(0, 1);
@@ -381,7 +384,7 @@ TEST_CASE("a call of one device that fails is done again on the next, until none
         CHECK(same_corners(warm, warm_one));
         CHECK(narrow.report().warnings.size() == 2);
         REQUIRE(narrow.report().devices.size() == 1);
-        CHECK(narrow.report().devices[0].index == 2);
+        CHECK(narrow.report().devices[0].device == 2);
         CHECK(same_bytes(test::found(narrow, input.scene, input.pairs), expected));
         CHECK(narrow.report().warnings.empty());
     }

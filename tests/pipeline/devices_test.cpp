@@ -8,6 +8,7 @@
 #include "tests/device/devices.hpp"
 #include "tests/narrow_phase/narrow_scenes.hpp"
 #include "tests/random.hpp"
+#include "tests/watchdog.hpp"
 
 using namespace clinch;
 
@@ -39,6 +40,7 @@ Scene heap(std::size_t n, test::Random& random) {
 }  // namespace
 
 TEST_CASE("steps on several devices give the pairs and contacts of one", "[device][together]") {
+    const test::Watchdog watchdog;
     const std::uint64_t seed = 71;
     INFO("seed " << seed);
     for (const std::uint32_t devices : {2u, 3u}) {

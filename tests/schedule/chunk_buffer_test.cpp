@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "tests/random.hpp"
-#include "tests/schedule/watchdog.hpp"
+#include "tests/watchdog.hpp"
 
 using namespace clinch;
 using detail::ChunkBuffer;
@@ -50,12 +50,11 @@ TEST_CASE("cancelling wakes those who wait on either side", "[host][schedule]") 
         ChunkBuffer<int> buffer(1, 1);
         if (full) CHECK(buffer.put(1));
         std::atomic<bool> refused{false};
-        test::or_abort("one waits for a chunk buffer that is cancelled", [&buffer, &refused, full] {
-            std::thread waiting([&buffer, &refused, full] { refused = full ? !buffer.put(2) : !buffer.take(); });
-            for (int i = 0; i < 1000; ++i) std::this_thread::yield();  // mostly it waits by then
-            buffer.cancel();
-            waiting.join();
-        });
+        const test::Watchdog watchdog;
+        std::thread waiting([&buffer, &refused, full] { refused = full ? !buffer.put(2) : !buffer.take(); });
+        for (int i = 0; i < 1000; ++i) std::this_thread::yield();  // mostly it waits by then
+        buffer.cancel();
+        waiting.join();
         CHECK(refused);
     }
 }
@@ -116,18 +115,13 @@ Streamed stream(std::uint64_t seed, Fails fails) {
     return result;
 }
 
-Streamed stream_or_abort(std::uint64_t seed, Fails fails) {
-    Streamed result;
-    test::or_abort("threads on one chunk buffer", [&result, seed, fails] { result = stream(seed, fails); });
-    return result;
-}
-
 }  // namespace
 
 TEST_CASE("producers and consumers pass every item once", "[host][schedule]") {
     for (std::uint64_t seed = 700; seed < 720; ++seed) {
         INFO("seed " << seed);
-        const Streamed found = stream_or_abort(seed, Fails::Nobody);
+        const test::Watchdog watchdog;
+        const Streamed found = stream(seed, Fails::Nobody);
         CHECK(found.taken == std::vector<std::uint32_t>(1000, 1));
         CHECK(found.put == 1000);
         CHECK(found.most_held >= 1);
@@ -139,7 +133,8 @@ TEST_CASE("producers and consumers pass every item once", "[host][schedule]") {
 TEST_CASE("an exception of one side does not hang the other", "[host][schedule]") {
     for (std::uint64_t seed = 720; seed < 760; ++seed) {
         INFO("seed " << seed);
-        const Streamed found = stream_or_abort(seed, seed % 2 == 0 ? Fails::Producer : Fails::Consumer);
+        const test::Watchdog watchdog;
+        const Streamed found = stream(seed, seed % 2 == 0 ? Fails::Producer : Fails::Consumer);
         CHECK(found.caught == 1);
         CHECK(found.cancelled);
         CHECK(*std::max_element(found.taken.begin(), found.taken.end()) <= 1);

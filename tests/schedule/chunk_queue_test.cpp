@@ -11,7 +11,7 @@
 
 #include "clinch/error.hpp"
 #include "tests/random.hpp"
-#include "tests/schedule/watchdog.hpp"
+#include "tests/watchdog.hpp"
 
 using namespace clinch;
 using detail::ChunkQueue;
@@ -242,8 +242,8 @@ Run run_threads(std::uint64_t seed) {
 TEST_CASE("threads that take, steal and fail do every chunk once", "[host][schedule]") {
     for (std::uint64_t seed = 600; seed < 660; ++seed) {
         INFO("seed " << seed);
-        Run run;
-        test::or_abort("threads on one chunk queue", [&run, seed] { run = run_threads(seed); });
+        const test::Watchdog watchdog;
+        const Run run = run_threads(seed);
         CHECK(run.left == 0);
         CHECK(run.taken == run.done.size());
         CHECK(std::count(run.done.begin(), run.done.end(), 1u) == static_cast<std::ptrdiff_t>(run.done.size()));
