@@ -11,11 +11,6 @@ namespace {
 
 constexpr std::size_t least_rows_a_part = 4096, most_parts = 512;
 
-struct Place {
-    std::uint64_t key;  // a, then b
-    const Contact* row;
-};
-
 // A stretch of a list.
 using Block = View<const Contact>;
 
@@ -42,11 +37,12 @@ private:
 
 }  // namespace
 
-void put_in_order(const std::vector<View<const Contact>>& lists, std::uint32_t bodies, Contact* to) {
+void ContactOrder::put(const std::vector<View<const Contact>>& lists, std::uint32_t bodies, Contact* to) {
     const std::vector<Block> blocks = blocks_of(lists);
     const std::size_t count = blocks.size();
     const Parts part(bodies, count);
-    std::vector<std::size_t> at(count * count, 0);  // rows of each part in each block, then their places
+    at_.assign(count * count, 0);  // rows of each part in each block, then their places
+    std::size_t* const at = at_.data();
     parallel_for(count, count > 1, [&](std::size_t k) {
         for (const Contact& c : blocks[k]) ++at[k * count + part.of(c)];
     });
@@ -61,13 +57,14 @@ void put_in_order(const std::vector<View<const Contact>>& lists, std::uint32_t b
         }
     }
     firsts.push_back(rows);
-    std::vector<Place> places(rows);
+    if (places_.size() < rows) places_.resize(rows + rows / 8);
+    Place* const places = places_.data();
     parallel_for(count, count > 1, [&](std::size_t k) {
         for (const Contact& c : blocks[k]) places[at[k * count + part.of(c)]++] = {std::uint64_t{c.a} << 32 | c.b, &c};
     });
     parallel_for(count, count > 1, [&](std::size_t p) {
-        Place* const first = places.data() + firsts[p];
-        Place* const end = places.data() + firsts[p + 1];
+        Place* const first = places + firsts[p];
+        Place* const end = places + firsts[p + 1];
         // Rows of one pair stand in one list, one behind the other.
         std::sort(first, end, [](const Place& x, const Place& y) {
             return x.key != y.key ? x.key < y.key : std::less<const Contact*>()(x.row, y.row);

@@ -9,9 +9,21 @@
 
 namespace clinch::detail {
 
-/// Copies all rows of `lists` to `to`, ascending by a, then b, numbers below `bodies`. The rows of a pair must stand
-/// together in one list, and stay in their order. On the host's threads: three reads of the lists, of which the last
-/// is at random places, and one write.
-void put_in_order(const std::vector<View<const Contact>>& lists, std::uint32_t bodies, Contact* to);
+/// Keeps its memory from call to call.
+class ContactOrder {
+public:
+    /// Copies all rows of `lists` to `to`, ascending by a, then b, numbers below `bodies`. The rows of a pair must
+    /// stand together in one list, and stay in their order. On the host's threads: three reads of the lists, of which
+    /// the last is at random places, and one write.
+    void put(const std::vector<View<const Contact>>& lists, std::uint32_t bodies, Contact* to);
+
+private:
+    struct Place {
+        std::uint64_t key;  // a, then b
+        const Contact* row;
+    };
+    std::vector<Place> places_;
+    std::vector<std::size_t> at_;
+};
 
 }  // namespace clinch::detail

@@ -2,7 +2,6 @@
 
 #include "src/device/stopwatch.hpp"
 #include "src/narrow_phase/contact_list.hpp"
-#include "src/narrow_phase/contact_order.hpp"
 
 namespace clinch::detail {
 
@@ -39,7 +38,7 @@ void NarrowStream::finish() {
         lists.push_back(found->contacts.view());
         rows += found->contacts.size();
     }
-    put_in_order(lists, static_cast<std::uint32_t>(scene_->row_count()), narrow_.result.contacts.grow(rows));
+    order_.put(lists, static_cast<std::uint32_t>(scene_->row_count()), narrow_.result.contacts.grow(rows));
     const bool margins = devices_ && narrow_.devices.finish_stream(report);
     report.pairs = pairs_on_host_;
     for (const DeviceShare& share : report.devices) report.pairs += share.pairs;

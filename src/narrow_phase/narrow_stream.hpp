@@ -9,6 +9,7 @@
 #include "clinch/aabb.hpp"
 #include "clinch/scene.hpp"
 #include "clinch/view.hpp"
+#include "src/narrow_phase/contact_order.hpp"
 #include "src/narrow_phase/narrow_phase_impl.hpp"
 #include "src/narrow_phase/narrow_result.hpp"
 
@@ -41,6 +42,7 @@ private:
     std::map<std::size_t, std::unique_ptr<NarrowResult>> found_;  // of each device
     bool devices_ = false;                                        // may work on the call
     NarrowResult on_host_;
+    ContactOrder order_;
     std::size_t pairs_on_host_ = 0;
 };
 

@@ -9,13 +9,14 @@
 
 namespace clinch::detail {
 
-PhaseRun::PhaseRun(NarrowStream& narrow, const PhaseRoles& roles, std::size_t chunk_pairs, bool help)
+PhaseRun::PhaseRun(NarrowStream& narrow, const PhaseRoles& roles, std::size_t chunk_pairs, bool help, Memory& memory)
     : narrow_(narrow),
       roles_(roles),
       chunk_pairs_(chunk_pairs),
       most_waiting_(2 * roles.narrow.size() + 2),
       help_(help || (roles.narrow.empty() && !roles.alike.empty())),
-      buffer_(most_waiting_, 1) {
+      buffer_(most_waiting_, 1),
+      memory_(memory) {
     for (const std::size_t device : roles_.broad) hands_[device];
     for (const std::size_t device : roles_.narrow) hands_[device];
     hands_[host];
@@ -28,10 +29,10 @@ bool PhaseRun::helps(std::size_t device) const {
 PhaseRun::Chunk PhaseRun::fresh() {
     Chunk chunk;
     {
-        const std::lock_guard<std::mutex> lock(spare_mutex_);
-        if (!spare_.empty()) {
-            chunk = std::move(spare_.back());
-            spare_.pop_back();
+        const std::lock_guard<std::mutex> lock(memory_.mutex);
+        if (!memory_.spare.empty()) {
+            chunk = std::move(memory_.spare.back());
+            memory_.spare.pop_back();
         }
     }
     chunk.clear();
@@ -78,8 +79,8 @@ void PhaseRun::do_chunk(std::size_t device, Chunk chunk) {
         }
     }
     hands_.at(device).narrow_ms += watch.ms();
-    const std::lock_guard<std::mutex> lock(spare_mutex_);
-    spare_.push_back(std::move(chunk));
+    const std::lock_guard<std::mutex> lock(memory_.mutex);
+    memory_.spare.push_back(std::move(chunk));
 }
 
 void PhaseRun::do_all(std::size_t device) {

@@ -35,9 +35,16 @@ public:
     /// In place of a device.
     static constexpr std::size_t host = ~std::size_t{0};
 
+    using Chunk = std::vector<Pair>;
+    /// Of chunks that were done, for the next ones: fresh memory costs more than filling it.
+    struct Memory {
+        std::mutex mutex;
+        std::vector<Chunk> spare;
+    };
+
     /// `chunk_pairs` must be at least NarrowStream::few_pairs. `help`: whether devices of the broad phase do chunks,
     /// too; they do anyway where nobody else would.
-    PhaseRun(NarrowStream& narrow, const PhaseRoles& roles, std::size_t chunk_pairs, bool help);
+    PhaseRun(NarrowStream& narrow, const PhaseRoles& roles, std::size_t chunk_pairs, bool help, Memory& memory);
 
     /// Calls `find_pairs`, which calls take(), while chunks are done; all are done when it returns. What each thread
     /// threw: DeviceFault what a device did; Stopped who was in the middle of something when another one threw.
@@ -59,7 +66,6 @@ public:
     StreamWork work() const;
 
 private:
-    using Chunk = std::vector<Pair>;
     // What belongs to one device, or the host: its chunk to the thread that finds pairs there, its time to the one that
     // does chunks.
     struct Hands {
@@ -81,8 +87,7 @@ private:
     bool help_;
     ChunkBuffer<Chunk> buffer_;
     std::map<std::size_t, Hands> hands_;  // none comes or goes while threads work
-    std::mutex spare_mutex_;
-    std::vector<Chunk> spare_;  // memory of chunks that were done
+    Memory& memory_;
     std::atomic<std::uint64_t> chunks_{0};
     FindCounts counts_;
     std::uint64_t pairs_ = 0;

@@ -67,6 +67,7 @@ private:
     std::optional<PhaseBalance> balance_;
     unsigned balanced_ = 0;  // units that it has
     std::uint64_t last_pairs_ = 0;
+    PhaseRun::Memory memory_;
 };
 
 }  // namespace clinch::detail
