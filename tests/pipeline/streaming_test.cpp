@@ -94,7 +94,7 @@ TEST_CASE("streamed steps have the contacts of listed ones, whoever does what", 
         for (const std::string& algorithm : test::names_for(alone.devices()[0])) {
             Pipeline on_all(together, streaming(options_for(algorithm))), on_one(alone, options_for(algorithm));
             test::Random random(seed);
-            Scene scene = heap(1500, 12.0, random);
+            Scene scene = heap(700, 24.0, random);
             // The first counts its pairs first, the next know about how many there will be.
             const std::vector<Forced> ways{{}, {false, 0, 200}, {true, 1, 300}, {false, devices, 500}, {true, 2, 150}};
             for (const Forced& way : ways) {
@@ -105,6 +105,7 @@ TEST_CASE("streamed steps have the contacts of listed ones, whoever does what", 
                 const StepResult& streamed = on_all.step(scene);
                 const StepResult& listed = on_one.step(scene);
                 CHECK(listed.report().pairs > 1000);
+                CHECK(listed.report().contacts > 300);
                 check_same(streamed, listed);
                 move_some(scene, random);
             }
