@@ -36,7 +36,7 @@ Scene heap(test::Random& random) {
 
 PipelineOptions streaming() {
     PipelineOptions options;
-    options.broad_phase.algorithm = "grid";
+    options.broad_phase.algorithm = "bvh";
     options.contacts = true;
     options.streaming = true;
     return options;

@@ -136,7 +136,7 @@ TEST_CASE("manifolds, tolerances and precisions stream, too", "[device]") {
     Context together = test::several(2u);
     together.impl().least_boxes_a_device = 1;
     Context alone = first_of(together);
-    std::vector<PipelineOptions> all{options_for("bvh", 4), options_for("grid"), options_for("grid"),
+    std::vector<PipelineOptions> all{options_for("bvh", 4), options_for("bvh"), options_for("bvh"),
                                      options_for("bvh", 8)};
     all[1].narrow_phase.precision = 0.0;
     all[2].narrow_phase.precision = 1.0;
@@ -169,7 +169,7 @@ TEST_CASE("steps stream on the host alone", "[host]") {
 
 TEST_CASE("a step that streams is kept while nothing changes", "[device]") {
     Context context = test::several(2u);
-    Pipeline pipeline(context, streaming(options_for("grid")));
+    Pipeline pipeline(context, streaming(options_for("bvh")));
     test::Random random(95);
     const Scene scene = heap(600, 8.0, random);
     const std::string first = test::bytes(pipeline.step(scene).contacts());
