@@ -53,8 +53,10 @@ int run(int argc, char** argv) {
     app.add_option("--devices", most, "at most; default 64")->check(CLI::Range(1, 64));
     bool measure = false, slow = false;
     app.add_flag("--real", measure, "also measure this machine's CPU, each core a device (a minute)");
-    app.add_flag("--unlike", slow,
-                 "also measure two devices of this CPU of which one is slowed to a quarter (a minute)");
+    app.add_flag(
+        "--unlike", slow,
+        "also measure two devices of this CPU of which one is slowed to a quarter (minutes); with the environment "
+        "POCL_DEVICES='pthread basic' the second is a device of its own");
     app.add_option("--seed", seed, "of speeds, work and noise; default 1");
     CLI11_PARSE(app, argc, argv);
     Json machines = Json::array({to_json(simulated(most, seed))});

@@ -91,6 +91,7 @@ template <class Load>
 double alone_seconds(const Load& load, Context context) {
     auto phase = load.make(context);
     std::vector<double> seconds;
+    seconds.reserve(settling + measured);
     for (int i = 0; i < settling + measured; ++i) seconds.push_back(seconds_of([&] { load.run(phase); }));
     seconds.erase(seconds.begin(), seconds.begin() + settling);
     std::nth_element(seconds.begin(), seconds.begin() + measured / 2, seconds.end());

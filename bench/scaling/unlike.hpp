@@ -24,7 +24,7 @@ struct UnlikeCurve {
 };
 
 /// A core of this machine's CPU, and PoCL's device `basic` (else a second core) slowed to a quarter. Nothing if there
-/// are no two such devices. Takes a minute.
+/// are no two such devices. Takes some minutes.
 std::vector<UnlikeCurve> unlike();
 
 /// As a table: of each step how far time and shares are from the ideal ones.
