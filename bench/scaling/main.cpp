@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "bench/scaling/curve.hpp"
+#include "bench/scaling/unlike.hpp"
 
 namespace {
 
@@ -32,6 +33,17 @@ Json to_json(const Machine& machine) {
         {"machine", machine.machine}, {"name", machine.name}, {"assumptions", machine.assumptions}, {"curves", curves}};
 }
 
+Json to_json(const UnlikeCurve& curve) {
+    Json steps = Json::array();
+    for (const UnlikeStep& step : curve.steps)
+        steps.push_back({{"seconds", step.seconds}, {"shares", step.shares}, {"device_seconds", step.device_seconds}});
+    return {{"load", curve.load},
+            {"bodies", curve.bodies},
+            {"alone_seconds", curve.alone_seconds},
+            {"ideal_seconds", curve.ideal_seconds},
+            {"steps", steps}};
+}
+
 int run(int argc, char** argv) {
     CLI::App app("Writes time and efficiency of a step by the number of devices, as JSON");
     std::string path;
@@ -39,8 +51,12 @@ int run(int argc, char** argv) {
     unsigned long long seed = 1;
     app.add_option("-o,--output", path, "default: standard output");
     app.add_option("--devices", most, "at most; default 64")->check(CLI::Range(1, 64));
-    bool measure = false;
+    bool measure = false, slow = false;
     app.add_flag("--real", measure, "also measure this machine's CPU, each core a device (a minute)");
+    app.add_flag(
+        "--unlike", slow,
+        "also measure two devices of this CPU of which one is slowed to a quarter (minutes); with the environment "
+        "POCL_DEVICES='pthread basic' the second is a device of its own");
     app.add_option("--seed", seed, "of speeds, work and noise; default 1");
     CLI11_PARSE(app, argc, argv);
     Json machines = Json::array({to_json(simulated(most, seed))});
@@ -49,7 +65,13 @@ int run(int argc, char** argv) {
         if (!here) throw std::runtime_error("--real needs PoCL, which has no CPU here");
         machines.push_back(to_json(*here));
     }
-    const Json content = {{"program", "clinch_scaling"}, {"seed", seed}, {"machines", machines}};
+    Json content = {{"program", "clinch_scaling"}, {"seed", seed}, {"machines", machines}};
+    if (slow) {
+        const std::vector<UnlikeCurve> curves = unlike();
+        if (curves.empty()) throw std::runtime_error("--unlike needs PoCL, with two cores or its device 'basic'");
+        std::cerr << table(curves);
+        for (const UnlikeCurve& curve : curves) content["unlike"].push_back(to_json(curve));
+    }
     if (path.empty()) {
         std::cout << content.dump(1) << '\n';
         return 0;

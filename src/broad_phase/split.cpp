@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <map>
@@ -25,23 +24,6 @@ std::vector<double> guesses_of(const Context::Impl& context) {
     std::vector<double> guesses;
     for (const DeviceInfo& info : context.infos) guesses.push_back(guessed_speed(info));
     return guesses;
-}
-
-// What a device gets after it had `before`, when `wanted` is best by what was measured: times waver, by page faults and
-// by what else a machine does, and an amount far from all that were measured is a guess.
-double steadied(double before, double wanted) {
-    constexpr double most_change = 1.5, least = 0.02;
-    if (before == 0.0) return wanted;
-    const double now = std::clamp(wanted, before / most_change, before * most_change);
-    return wanted == 0.0 && now < least ? 0.0 : now;
-}
-
-// What was measured wavers; a new cut costs what the algorithms keep of the old slabs.
-bool near(const std::vector<double>& p, const std::vector<double>& q) {
-    constexpr double part = 0.1;
-    for (std::size_t i = 0; i < p.size(); ++i)
-        if (std::fabs(p[i] - q[i]) > part * std::max(p[i], q[i])) return false;
-    return p.size() == q.size();
 }
 
 bool is_limit(const std::exception_ptr& thrown) {
@@ -81,17 +63,13 @@ private:
 }  // namespace
 
 BroadSplit::BroadSplit(Context::Impl& context, const BroadPhaseOptions& options)
-    : context_(context),
-      options_(options),
-      shares_(guesses_of(context)),
-      given_(shares_.fractions()),
-      paces_(context.infos.size()) {}
+    : context_(context), options_(options), shares_(guesses_of(context)) {}
 BroadSplit::~BroadSplit() = default;
 
 std::vector<std::size_t> BroadSplit::crew_for(const AlgorithmRow& row, std::uint64_t count) const {
     std::vector<std::size_t> crew;
     for (const std::size_t device : context_.crew()) {
-        const bool has_share = !forced_.empty() || given_[device] > 0.0;
+        const bool has_share = !forced_.empty() || shares_.fractions()[device] > 0.0;
         if (has_share && runs_on(row, context_.infos[device])) crew.push_back(device);
     }
     const std::uint64_t most = count / std::max<std::uint64_t>(1, context_.least_boxes_a_device);
@@ -102,7 +80,7 @@ std::vector<std::size_t> BroadSplit::crew_for(const AlgorithmRow& row, std::uint
 std::vector<double> BroadSplit::fractions_of(const std::vector<std::size_t>& crew) const {
     std::vector<double> fractions;
     for (std::size_t k = 0; k < crew.size(); ++k)
-        fractions.push_back(forced_.empty() ? given_[crew[k]] : k < forced_.size() ? forced_[k] : 0.0);
+        fractions.push_back(forced_.empty() ? shares_.fractions()[crew[k]] : k < forced_.size() ? forced_[k] : 0.0);
     const double sum = std::accumulate(fractions.begin(), fractions.end(), 0.0);
     for (double& fraction : fractions)
         fraction = sum > 0.0 ? fraction / sum : 1.0 / static_cast<double>(fractions.size());
@@ -126,7 +104,7 @@ void BroadSplit::prepare(const std::vector<std::size_t>& crew) {
 // Gives each of the crew a slab: that of the last call if it still has the right share. False if it does not pay.
 bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& crew) {
     const std::vector<double> fractions = fractions_of(crew);
-    if (crew == dealt_to_ && near(fractions, dealt_) && deal_.keep(boxes)) return true;
+    if (crew == dealt_to_ && SteadyShares::may_stay(dealt_, fractions) && deal_.keep(boxes)) return true;
     const Slabs slabs = choose_slabs(boxes, fractions);
     if (forced_.empty() && crew.size() > 1 && static_cast<double>(crew.size()) < least_speed_up * (1.0 + slabs.copies))
         return false;
@@ -307,18 +285,9 @@ void BroadSplit::measure() {
     for (std::size_t s = 0; s < workers_.size(); ++s) {
         const std::size_t device = workers_[s]->device();
         const auto work = static_cast<double>(deal_.members(s).size());
-        if (work > 0.0) measures[device] = {work, work * paces_[device].after(workers_[s]->seconds() / work)};
+        if (work > 0.0) measures[device] = {work, workers_[s]->seconds()};
     }
-    shares_.measured(measures);
-    for (std::size_t d = 0; d < given_.size(); ++d) given_[d] = steadied(given_[d], shares_.fractions()[d]);
-}
-
-double BroadSplit::Paces::after(double pace) {
-    last_[count_++ % last_.size()] = pace;
-    std::array<double, 5> sorted = last_;
-    const auto end = sorted.begin() + static_cast<std::ptrdiff_t>(std::min(count_, sorted.size()));
-    std::sort(sorted.begin(), end);
-    return sorted[static_cast<std::size_t>(end - sorted.begin() - 1) / 2];
+    shares_.measured(std::move(measures));
 }
 
 void BroadSplit::forget_pairs() {

@@ -1,7 +1,6 @@
 // One broad phase on several devices: each finds the pairs of one slab of space, with whatever algorithm [thesis 5.2].
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -15,7 +14,7 @@
 #include "src/broad_phase/slab_worker.hpp"
 #include "src/broad_phase/slabs.hpp"
 #include "src/device/context_impl.hpp"
-#include "src/schedule/shares.hpp"
+#include "src/schedule/steady_shares.hpp"
 
 namespace clinch::detail {
 
@@ -50,16 +49,6 @@ public:
     void forget_pairs();
 
 private:
-    // Seconds a box of one device in the last calls. Some are accidents: fresh memory, another program.
-    class Paces {
-    public:
-        /// The (lower) median of the last ones, with this one.
-        double after(double pace);
-
-    private:
-        std::array<double, 5> last_{};
-        std::size_t count_ = 0;
-    };
     void start_call();
     std::vector<std::size_t> crew_for(const AlgorithmRow& row, std::uint64_t count) const;
     std::vector<double> fractions_of(const std::vector<std::size_t>& crew) const;
@@ -76,9 +65,7 @@ private:
 
     Context::Impl& context_;
     const BroadPhaseOptions& options_;
-    Shares shares_;              // of the devices of the context
-    std::vector<double> given_;  // the same, changed little by little
-    std::vector<Paces> paces_;   // of the devices
+    SteadyShares shares_;  // of the devices of the context
     std::vector<double> forced_;
     SlabDeal deal_;
     std::vector<std::size_t> dealt_to_;                 // who has which slab of it

@@ -31,6 +31,14 @@ double weighted_median(std::vector<std::pair<double, double>> values) {
     return values.back().first;
 }
 
+// Whether so many devices took longer by a marked factor, or all less, that it is not they but the work: all but a
+// quarter of them. What one device alone does, however large its part, is its own affair.
+bool all_changed(std::vector<std::pair<double, double>> ratios) {
+    std::sort(ratios.begin(), ratios.end());
+    const std::size_t others = ratios.size() / 4;
+    return ratios[others].first >= marked || ratios[ratios.size() - 1 - others].first <= 1.0 / marked;
+}
+
 }  // namespace
 
 Shares::Shares(const std::vector<double>& guesses) {
@@ -103,8 +111,8 @@ void Shares::rescale(const std::vector<Sample>& samples) {
         const double work = std::max(sample.seconds - device.latency, least_work * sample.seconds);
         ratios.emplace_back(work / (sample.part * device.all), sample.part);
     }
+    if (measured_ && !all_changed(ratios)) return;
     const double change = weighted_median(std::move(ratios));
-    if (measured_ && change < marked && change > 1.0 / marked) return;
     for (Device& device : devices_) {
         device.all *= change;
         device.all_variance *= change * change;

@@ -189,6 +189,28 @@ TEST_CASE("a device whose speed changes is followed", "[host][schedule]") {
     }
 }
 
+TEST_CASE("a change of the device that does most is not taken for one of the work", "[host][schedule]") {
+    for (const double factor : {0.4, 2.5}) {
+        INFO("factor " << factor);
+        Machine machine{{400.0, 0.0}, {100.0, 0.0}};
+        test::Random random(7);
+        Shares shares({1.0, 1.0});
+        for (int i = 0; i < 10; ++i) step(shares, machine, 1000.0, 0.05, random);
+        const double other = shares.estimate(1).seconds_for_all;
+        CHECK(other == Approx(10.0).epsilon(0.1));
+        machine[0].speed *= factor;
+        for (int i = 0; i < 3; ++i) {
+            step(shares, machine, 1000.0, 0.05, random);
+            CHECK(shares.estimate(1).seconds_to_begin + shares.estimate(1).seconds_for_all ==
+                  Approx(other).epsilon(0.1));
+        }
+        // All of them: the work.
+        for (int i = 0; i < 8; ++i) step(shares, machine, 1000.0, 0.05, random);
+        step(shares, machine, 3000.0, 0.05, random);
+        CHECK(shares.estimate(1).seconds_for_all == Approx(3.0 * other).epsilon(0.15));
+    }
+}
+
 TEST_CASE("one step that went wrong does not change the shares", "[host][schedule]") {
     test::Random random(5);
     const Machine machine{{100.0, 0.0}, {100.0, 0.0}, {200.0, 0.0}};
