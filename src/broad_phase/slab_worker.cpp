@@ -103,6 +103,7 @@ void SlabWorker::find(const SlabTask& task, std::size_t s) {
         pairs_.count_only();
         count(task, s);
     } else {
+        if (task.keys) pairs_.accept_keys(*task.keys);
         search(task, task.deal.members(s));
         found_ = pairs_.size();
     }

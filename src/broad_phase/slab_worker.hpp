@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "clinch/broad_phase.hpp"
@@ -22,6 +23,8 @@ struct SlabTask {
     const FilterInput& filters;
     const SlabDeal& deal;
     bool counts_only;
+    /// As what lists of names may come; the same from all slabs, so that they can be merged as they are.
+    std::optional<KeyLayout> keys;
 };
 
 /// Keeps its device's algorithms and buffers from call to call. One thread at a time; workers of different devices work
@@ -40,7 +43,7 @@ public:
     void find(const SlabTask& task, std::size_t s);
 
     /// What was found.
-    SlabList pairs() const noexcept { return {pairs_.view(), counts_.named}; }
+    SlabList pairs() const noexcept { return {pairs_.view(), counts_.named, pairs_.keys()}; }
     /// How many pairs were found in the slab.
     std::uint64_t found() const noexcept { return found_; }
     /// How many of them belong to it; only where they were counted.

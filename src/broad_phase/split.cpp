@@ -144,12 +144,28 @@ bool BroadSplit::find(const AlgorithmRow& row, BoxInput& boxes, const FilterInpu
     const View<const Aabb> on_host = boxes.on_host();
     if (!deal(on_host, crew)) return false;
     prepare(crew);
-    const SlabTask task{row, on_host, filters, deal_, pairs.counts_only()};
+    const SlabTask task{row, on_host, filters, deal_, pairs.counts_only(), keys_for(boxes.count())};
     run(task);
     measure();
     gather(task.counts_only, pairs, counts);
     check_limit(pairs.size(), options_);
     return true;
+}
+
+// The keys that suit the longest list of the last call, or at first, so many pairs a box; none if not all devices have
+// them: then pairs are what can be merged at once.
+std::optional<KeyLayout> BroadSplit::keys_for(std::uint64_t boxes) const {
+    constexpr std::uint64_t guessed_pairs_a_box = 8;
+    const DeviceInfo* widest = nullptr;
+    std::uint64_t most = 0;
+    for (const auto& worker : workers_) {
+        const DeviceInfo& info = context_.infos[worker->device()];
+        if (!PairSort::packs_on(info)) return std::nullopt;
+        if (widest == nullptr || info.compute_units > widest->compute_units) widest = &info;
+        most = std::max(most, worker->found());
+    }
+    return PairSort::layout_for(most > 0 ? most : boxes * guessed_pairs_a_box, static_cast<std::uint32_t>(boxes),
+                                *widest);
 }
 
 // All slabs; those of a device that fails once more, on others.
@@ -226,7 +242,7 @@ void BroadSplit::throw_limit(const SlabTask& task) {
         worker->forget_pairs();
         worker->options().max_pairs = std::numeric_limits<std::uint64_t>::max();
     }
-    run({task.row, task.boxes, task.filters, task.deal, true});
+    run({task.row, task.boxes, task.filters, task.deal, true, std::nullopt});
     std::uint64_t pairs = 0;
     for (const auto& worker : workers_) pairs += worker->counted();
     check_limit(pairs, options_);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -59,6 +60,7 @@ private:
     std::vector<double> fractions_of(const std::vector<std::size_t>& crew) const;
     bool deal(View<const Aabb> boxes, const std::vector<std::size_t>& crew);
     void prepare(const std::vector<std::size_t>& crew);
+    std::optional<KeyLayout> keys_for(std::uint64_t boxes) const;
     void run(const SlabTask& task);
     std::vector<std::exception_ptr> run_once(const SlabTask& task, const std::vector<std::size_t>& which);
     std::vector<std::size_t> reassign(const AlgorithmRow& row, const std::vector<std::size_t>& which,
