@@ -141,10 +141,12 @@ bool BroadPhase::Impl::find_split(const detail::AlgorithmRow& row, detail::BoxIn
         return false;
     }
     if (!split) split = std::make_unique<detail::BroadSplit>(context, options);
-    if (!split->pays(row, boxes.count()) || !split->find(row, boxes, filters, pairs, counts)) return false;
+    if (!split->pays(row, boxes.count())) return false;
+    const bool done = split->find(row, boxes, filters, pairs, counts);
+    report.warnings.insert(report.warnings.end(), split->warnings().begin(), split->warnings().end());
+    if (!done) return false;
     report.broad_split = split->work();
     split->forget_pairs();
-    report.warnings.insert(report.warnings.end(), split->warnings().begin(), split->warnings().end());
     return true;
 }
 

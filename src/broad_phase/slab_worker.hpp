@@ -1,6 +1,7 @@
 // The pairs of one slab on one device.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -21,10 +22,13 @@ struct SlabTask {
     const AlgorithmRow& row;
     View<const Aabb> boxes;
     const FilterInput& filters;
-    const SlabDeal& deal;
+    SlabDeal& deal;
     bool counts_only;
     /// As what lists of names may come; the same from all slabs, so that they can be merged as they are.
     std::optional<KeyLayout> keys;
+    /// Not null: boxes may have moved since the deal. Set where one has moved into a slab that it is no member of: then
+    /// pairs are missing, and all is to be done again after another deal. Not where they are only counted.
+    std::atomic<bool>* strays = nullptr;
 };
 
 /// Keeps its device's algorithms and buffers from call to call. One thread at a time; workers of different devices work
@@ -39,7 +43,7 @@ public:
     /// As its algorithms are to have them.
     BroadPhaseOptions& options() noexcept { return options_; }
 
-    /// Finds the pairs of slab s, or only counts them. Opens the device if need be.
+    /// Finds the pairs of slab s, or only counts them. Opens the device if need be. Stops early once there are strays.
     void find(const SlabTask& task, std::size_t s);
 
     /// What was found.
@@ -56,7 +60,7 @@ public:
 private:
     void count(const SlabTask& task, std::size_t s);
     void search(const SlabTask& task, const std::vector<std::uint32_t>& members);
-    const Buffer& send(Device& device, View<const Aabb> boxes, const std::vector<std::uint32_t>& members);
+    const Buffer& send(Device& device, const SlabTask& task, const std::vector<std::uint32_t>& members);
     void name(Device& device, const SlabTask& task, BoxInput& input);
     FilterInput filters_of(const FilterInput& filters, const std::vector<std::uint32_t>& members);
 

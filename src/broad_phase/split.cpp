@@ -21,6 +21,9 @@ namespace {
 // Less than this, by the boxes that several devices have, does not pay.
 constexpr double least_speed_up = 1.3;
 
+// Boxes that stray do so again soon: they move.
+constexpr int calls_after_strays = 16;
+
 std::vector<double> guesses_of(const Context::Impl& context) {
     std::vector<double> guesses;
     for (const DeviceInfo& info : context.infos) guesses.push_back(guessed_speed(info));
@@ -122,10 +125,9 @@ void BroadSplit::prepare(const std::vector<std::size_t>& crew) {
     }
 }
 
-// Gives each of the crew a slab: that of the last call if it still has the right share. False if it does not pay.
+// Gives each of the crew a slab. False if it does not pay.
 bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& crew) {
     const std::vector<double> fractions = fractions_of(crew);
-    if (crew == dealt_to_ && near(fractions, dealt_) && deal_.keep(boxes)) return true;
     const Slabs slabs = choose_slabs(boxes, fractions);
     if (forced_.empty() && static_cast<double>(crew.size()) < least_speed_up * (1.0 + slabs.copies)) return false;
     dealt_to_.clear();  // until all went well
@@ -135,6 +137,20 @@ bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& cr
     return true;
 }
 
+// The slabs for this call: those of the last one if they still have the right shares. They are right if all boxes stay
+// in those that they are members of. Workers see that when they gather their boxes, which saves a pass over all, but
+// then some may have worked for nothing; hence not soon after boxes have strayed.
+BroadSplit::Members BroadSplit::members_for(View<const Aabb> boxes, const std::vector<std::size_t>& crew,
+                                            bool counts_only) {
+    if (crew == dealt_to_ && near(fractions_of(crew), dealt_) && deal_.is_of(boxes.size())) {
+        if (!counts_only && calls_looked_first_ == 0) return Members::ToBeSeen;
+        calls_looked_first_ = std::max(0, calls_looked_first_ - 1);
+        if (deal_.keep(boxes)) return Members::Right;
+        calls_looked_first_ = calls_after_strays;
+    }
+    return deal(boxes, crew) ? Members::Right : Members::NotWorth;
+}
+
 bool BroadSplit::find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
                       FindCounts& counts) {
     warnings_.clear();
@@ -142,10 +158,20 @@ bool BroadSplit::find(const AlgorithmRow& row, BoxInput& boxes, const FilterInpu
         if (!context_.in_use(d)) shares_.retire(d);
     const std::vector<std::size_t> crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
-    if (!deal(on_host, crew)) return false;
+    const Members members = members_for(on_host, crew, pairs.counts_only());
+    if (members == Members::NotWorth) return false;
     prepare(crew);
-    const SlabTask task{row, on_host, filters, deal_, pairs.counts_only(), keys_for(boxes.count())};
+    std::atomic<bool> strays{false};
+    SlabTask task{row, on_host, filters, deal_, pairs.counts_only(), keys_for(boxes.count()), nullptr};
+    if (members == Members::ToBeSeen) task.strays = &strays;
     run(task);
+    if (strays) {
+        calls_looked_first_ = calls_after_strays;
+        forget_pairs();
+        if (!deal(on_host, crew)) return false;
+        task.strays = nullptr;
+        run(task);
+    }
     measure();
     gather(task.counts_only, pairs, counts);
     check_limit(pairs.size(), options_);
@@ -242,7 +268,8 @@ void BroadSplit::throw_limit(const SlabTask& task) {
         worker->forget_pairs();
         worker->options().max_pairs = std::numeric_limits<std::uint64_t>::max();
     }
-    run({task.row, task.boxes, task.filters, task.deal, true, std::nullopt});
+    if (task.strays != nullptr && !deal_.keep(task.boxes)) deal_.deal(task.boxes, Slabs(deal_.slabs()));
+    run({task.row, task.boxes, task.filters, task.deal, true, std::nullopt, nullptr});
     std::uint64_t pairs = 0;
     for (const auto& worker : workers_) pairs += worker->counted();
     check_limit(pairs, options_);

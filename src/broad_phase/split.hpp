@@ -31,8 +31,8 @@ public:
     /// Whether `count` boxes are worth more than one device to `row`. Opens none.
     bool pays(const AlgorithmRow& row, std::uint64_t count) const;
     /// As BroadPhaseAlgorithm::find, to the byte; `pairs` keeps or counts them. A device that fails is retired, and
-    /// another one does its slab; when none is left what it threw leaves. False, with nothing done, if so many boxes
-    /// reach over the cuts that it does not pay.
+    /// another one does its slab; when none is left what it threw leaves. False, with no pairs found, if so many boxes
+    /// reach over the cuts that it does not pay; devices may have failed even so.
     bool find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
               FindCounts& counts);
     /// For tests: shares of the devices, the primary first, in place of those that were measured.
@@ -56,9 +56,12 @@ private:
         std::array<double, 5> last_{};
         std::size_t count_ = 0;
     };
+    // Of the slabs for a call. ToBeSeen: workers tell whether they are right.
+    enum class Members { NotWorth, Right, ToBeSeen };
     std::vector<std::size_t> crew_for(const AlgorithmRow& row, std::uint64_t count) const;
     std::vector<double> fractions_of(const std::vector<std::size_t>& crew) const;
     bool deal(View<const Aabb> boxes, const std::vector<std::size_t>& crew);
+    Members members_for(View<const Aabb> boxes, const std::vector<std::size_t>& crew, bool counts_only);
     void prepare(const std::vector<std::size_t>& crew);
     std::optional<KeyLayout> keys_for(std::uint64_t boxes) const;
     void run(const SlabTask& task);
@@ -78,6 +81,7 @@ private:
     SlabDeal deal_;
     std::vector<std::size_t> dealt_to_;                 // who has which slab of it
     std::vector<double> dealt_;                         // the shares it was made for
+    int calls_looked_first_ = 0;                        // to come, that look for strays before all else
     std::vector<std::unique_ptr<SlabWorker>> workers_;  // of each slab
     std::vector<std::string> warnings_;
 };

@@ -124,7 +124,18 @@ TEST_CASE("members stay while boxes move a little, and the list is right", "[hos
                     box.max[d] += way;
                 }
             const std::vector<std::uint32_t> before = deal.members(1);
-            if (deal.keep(boxes)) {
+            // What slabs see, each of its members, is what a look at all boxes sees.
+            SlabDeal looked = deal;
+            bool stayed = looked.is_of(boxes.size());
+            for (std::size_t s = 0; s < looked.count(); ++s)
+                for (const std::uint32_t i : looked.members(s)) stayed &= looked.look(s, i, boxes[i]);
+            const bool keeps = deal.keep(boxes);
+            CHECK(stayed == keeps);
+            for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+                REQUIRE(looked.span(i).first == deal.span(i).first);
+                REQUIRE(looked.span(i).last == deal.span(i).last);
+            }
+            if (keeps) {
                 CHECK(deal.members(1) == before);
                 ++kept;
             } else {
@@ -137,6 +148,7 @@ TEST_CASE("members stay while boxes move a little, and the list is right", "[hos
         }
         boxes.pop_back();
         CHECK_FALSE(deal.keep(boxes));
+        CHECK_FALSE(deal.is_of(boxes.size()));
     }
     CHECK(kept > 5);
     CHECK(dealt > 10);
