@@ -9,6 +9,8 @@
 //   pair_count    pairs, n -> counts[bucket * runs + run]
 //   pair_scatter  pairs, offsets (the scan of counts) -> keys by bucket
 //   pair_buckets  keys by bucket, offsets -> pairs in order; uses up the keys
+//   key_buckets   the same, but the keys stay packed, in order where they are; uses up the pairs. And
+//                 starts[bucket], where each begins
 // `shift` is the number of bits of a below those that name the bucket, b_bits the number of bits of b.
 // Any work-group size.
 // Defines: LANES (given by the library for the device); KEY (uint): uint, where shift + b_bits is at most 32, or ulong;
@@ -154,22 +156,37 @@ inline void unpack(global const KEY* keys, uint n, uint a, uint shift, uint b_bi
     for (; i < n; ++i) out[i] = (uint2)(a | ((uint)(keys[i] >> b_bits) & a_mask), (uint)keys[i] & b_mask);
 }
 
+// Sorts n keys of a bucket; returns where they are then: where they were, or at the end of the room of the bucket's
+// pairs, which were all read and serve as the other half of the work.
+inline global KEY* sort_bucket(global KEY* keys, uint n, global uint2* pairs, uint key_bits) {
+    if (n <= INSERTION) {
+        insertion_sort(keys, n);
+        return keys;
+    }
+    uint most = n < FEW ? 8 : DIGIT_BITS, passes = (key_bits + most - 1) / most;
+    return radix_sort(keys, (global KEY*)(pairs + n) - n, n, key_bits, (key_bits + passes - 1) / passes);
+}
+
+inline uint end_of(uint bucket, ulong n, global const uint* offsets, uint runs, uint buckets) {
+    return bucket + 1 < buckets ? offsets[(bucket + 1) * runs] : (uint)n;
+}
+
 kernel void pair_buckets(global KEY* keys, global uint2* pairs, ulong n, global const uint* restrict offsets, uint runs,
                          uint buckets, uint shift, uint b_bits) {
     uint bucket = get_global_id(0);
     if (bucket >= buckets) return;
-    uint start = offsets[bucket * runs];
-    uint count = (bucket + 1 < buckets ? offsets[(bucket + 1) * runs] : (uint)n) - start;
-    global uint2* out = pairs + start;
-    global KEY* here = keys + start;
-    if (count <= INSERTION) {
-        insertion_sort(here, count);
-    } else {
-        uint key_bits = shift + b_bits, most = count < FEW ? 8 : DIGIT_BITS;
-        uint passes = (key_bits + most - 1) / most;
-        // The bucket's pairs were all read: the end of their room serves as the other half of the work.
-        global KEY* there = (global KEY*)(out + count) - count;
-        here = radix_sort(here, there, count, key_bits, (key_bits + passes - 1) / passes);
-    }
-    unpack(here, count, bucket << shift, shift, b_bits, out);
+    uint start = offsets[bucket * runs], count = end_of(bucket, n, offsets, runs, buckets) - start;
+    global KEY* sorted = sort_bucket(keys + start, count, pairs + start, shift + b_bits);
+    unpack(sorted, count, bucket << shift, shift, b_bits, pairs + start);
+}
+
+kernel void key_buckets(global KEY* keys, global uint2* pairs, ulong n, global const uint* restrict offsets, uint runs,
+                        uint buckets, uint shift, uint b_bits, global uint* restrict starts) {
+    uint bucket = get_global_id(0);
+    if (bucket >= buckets) return;
+    uint start = offsets[bucket * runs], count = end_of(bucket, n, offsets, runs, buckets) - start;
+    starts[bucket] = start;
+    global KEY* sorted = sort_bucket(keys + start, count, pairs + start, shift + b_bits);
+    if (sorted == keys + start) return;
+    for (uint i = 0; i < count; ++i) keys[start + i] = sorted[i];
 }

@@ -153,12 +153,13 @@ bool BroadPhase::Impl::find_split(const detail::AlgorithmRow& row, detail::BoxIn
             pairs.append(found.data(), found.size());
         };
         split->stream(row, boxes, filters, {}, {take, pairs.piece()}, counts);
-    } else if (!split->find(row, boxes, filters, pairs, counts)) {
-        return false;
+    } else {
+        const bool done = split->find(row, boxes, filters, pairs, counts);
+        report.warnings.insert(report.warnings.end(), split->warnings().begin(), split->warnings().end());
+        if (!done) return false;
     }
     report.broad_split = split->work();
     split->forget_pairs();
-    report.warnings.insert(report.warnings.end(), split->warnings().begin(), split->warnings().end());
     return true;
 }
 

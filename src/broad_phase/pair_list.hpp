@@ -7,12 +7,15 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "clinch/aabb.hpp"
 #include "clinch/view.hpp"
 #include "src/device/device.hpp"
+#include "src/primitives/pair_keys.hpp"
+#include "src/primitives/pair_sort.hpp"
 
 namespace clinch::detail {
 
@@ -27,10 +30,12 @@ public:
         counts_only_ = false;
         take_ = nullptr;
         piece_ = unlimited;
+        accepted_.reset();
     }
     /// Forgets the pairs; where they go stays as it is.
     void restart() {
         mapping_.release();
+        starts_.clear();
         host_.clear();
         size_ = 0;
     }
@@ -42,6 +47,12 @@ public:
     void stream_to(const Taker& take, std::size_t piece) {
         take_ = &take;
         piece_ = std::max<std::size_t>(piece, 1);
+    }
+    /// From here to the next clear(): the whole list, in order, of names (FindCounts::named) may come as keys.
+    void accept_keys(const KeyLayout& layout) { accepted_ = layout; }
+    /// Null where they may not: then pairs must come.
+    const KeyLayout* accepted_keys() const noexcept {
+        return accepted_ && !counts_only_ && take_ == nullptr ? &*accepted_ : nullptr;
     }
     /// Pairs an algorithm should hold at once, at most.
     std::size_t piece() const noexcept { return piece_; }
@@ -78,6 +89,18 @@ public:
         mapping_ = std::move(mapping);
         size_ = count;
     }
+    /// The whole list is keys of the layout that was asked for, which outlive this list's next clear().
+    void adopt(PairSort::Packed packed) {
+        restart();
+        mapping_ = std::move(packed.keys);
+        starts_ = std::move(packed.starts);
+        size_ = starts_.back();
+    }
+    /// Takes the last `count` pairs away again, of a list of the host.
+    void drop(std::size_t count) {
+        size_ -= count;
+        host_.resize(host_.size() - count);
+    }
     /// Sorts a list of the host that was put together from sorted runs, which end at `ends`. Pieces of a stream stay
     /// sorted each for itself.
     void merge_runs(std::vector<std::size_t> ends) {
@@ -93,9 +116,14 @@ public:
             ends = std::move(merged);
         }
     }
-    /// The list; empty when pairs were streamed or counted.
+    /// The list as keys, where it came so.
+    PairKeys keys() const noexcept {
+        if (starts_.empty()) return {};
+        return {*accepted_, {mapping_.as<std::uint32_t>(), static_cast<std::size_t>(size_)}, starts_};
+    }
+    /// The list; empty when pairs were streamed or counted, or came as keys.
     View<const Pair> view() const noexcept {
-        if (counts_only_ || take_ != nullptr) return {};
+        if (counts_only_ || take_ != nullptr || !starts_.empty()) return {};
         const Pair* mapped = mapping_.as<Pair>();
         return {mapped != nullptr ? mapped : host_.data(), static_cast<std::size_t>(size_)};
     }
@@ -106,6 +134,8 @@ private:
     static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
     boost::container::vector<Pair> host_;  // grows without being filled first
     Mapping mapping_;
+    std::optional<KeyLayout> accepted_;
+    std::vector<std::uint32_t> starts_;  // of buckets, where mapping_ is of keys
     std::uint64_t size_ = 0;
     bool counts_only_ = false;
     const Taker* take_ = nullptr;

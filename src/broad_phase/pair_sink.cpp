@@ -160,6 +160,12 @@ void PairSink::close_gaps(const Outcome& outcome) {
 // Puts the pairs of an outcome behind those in `pairs`; `alone`: they are the only ones, and may stay on the device.
 void PairSink::deliver(const Outcome& outcome, std::uint32_t bodies, bool alone, PairList& pairs, FindCounts& counts) {
     close_gaps(outcome);
+    const KeyLayout* const keys = pairs.accepted_keys();
+    if (alone && keys != nullptr && counts.named && options_.order == Order::Sorted &&
+        PairSort::packs_on(device_.info())) {
+        pairs.adopt(sort_.sort_to_keys(pairs_, outcome.pairs, *keys));
+        return;
+    }
     if (options_.order == Order::Sorted) sort_.sort(pairs_, outcome.pairs, bodies);
     const Stopwatch watch;
     Mapping mapping = device_.map(pairs_, outcome.pairs * sizeof(Pair));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "src/broad_phase/key_merge.hpp"
 #include "src/primitives/host_parallel.hpp"
 
 namespace clinch::detail {
@@ -199,15 +200,42 @@ void join_unsorted(const SlabDeal& deal, const SlabLists& lists, PairList& out) 
     });
 }
 
+// Whether all pairs that there are came as keys of one layout.
+bool are_keys(const SlabLists& lists) {
+    const KeyLayout* layout = nullptr;
+    for (const SlabList& list : lists) {
+        if (!list.keys.any() && !list.pairs.empty()) return false;
+        if (!list.keys.any()) continue;
+        if (layout != nullptr && !(*layout == list.keys.layout)) return false;
+        layout = &list.keys.layout;
+    }
+    return layout != nullptr;
+}
+
 }  // namespace
 
 void merge_slabs(const SlabDeal& deal, const SlabLists& lists, bool sorted, PairList& out) {
+    if (sorted && are_keys(lists)) {
+        std::vector<PairKeys> keys;
+        for (const SlabList& list : lists)
+            if (list.keys.any()) keys.push_back(list.keys);
+        merge_keys(keys, out);
+        return;
+    }
+    SlabLists all = lists;
+    std::vector<PairList> unpacked(lists.size());
     std::uint64_t pairs = 0;
-    for (const SlabList& list : lists) pairs += list.pairs.size();
+    for (std::size_t s = 0; s < lists.size(); ++s) {
+        if (lists[s].keys.any()) {  // beside those of another kind of device
+            merge_keys({lists[s].keys}, unpacked[s]);
+            all[s].pairs = unpacked[s].view();
+        }
+        pairs += all[s].pairs.size();
+    }
     if (sorted)
-        merge_sorted(deal, lists, pairs, out);
+        merge_sorted(deal, all, pairs, out);
     else
-        join_unsorted(deal, lists, out);
+        join_unsorted(deal, all, out);
 }
 
 }  // namespace clinch::detail

@@ -37,13 +37,22 @@ void SlabWorker::assign(std::size_t device) {
     device_ = device;
 }
 
-// Boxes of members on the device, in their order.
-const Buffer& SlabWorker::send(Device& device, View<const Aabb> boxes, const std::vector<std::uint32_t>& members) {
+// Boxes of members on the device, in their order; on the way they are looked at, if they may have moved.
+const Buffer& SlabWorker::send(Device& device, const SlabTask& task, const std::vector<std::uint32_t>& members) {
     const std::size_t bytes = members.size() * sizeof(Aabb);
     device.reserve(staging_, bytes, "boxes");
     Mapping mapping = device.map_to_write(staging_, bytes);
     Aabb* const rows = mapping.to<Aabb>();
-    for (std::size_t i = 0; i < members.size(); ++i) rows[i] = boxes[members[i]];
+    if (task.strays == nullptr) {
+        for (std::size_t i = 0; i < members.size(); ++i) rows[i] = task.boxes[members[i]];
+    } else {
+        bool all_stayed = true;
+        for (std::size_t i = 0; i < members.size(); ++i) {
+            rows[i] = task.boxes[members[i]];
+            all_stayed &= task.deal.look(slab_, members[i], task.boxes[members[i]]);
+        }
+        if (!all_stayed) *task.strays = true;
+    }
     device.written(std::move(mapping));
     return staging_;
 }
@@ -73,7 +82,8 @@ void SlabWorker::search(const SlabTask& task, const std::vector<std::uint32_t>& 
     Device& device = context_.open(device_);
     std::unique_ptr<BroadPhaseAlgorithm>& algorithm = made_[&task.row];
     if (!algorithm) algorithm = task.row.make(&device, options_);
-    BoxInput input(device, send(device, task.boxes, members).handle(), 0, static_cast<std::uint32_t>(members.size()));
+    BoxInput input(device, send(device, task, members).handle(), 0, static_cast<std::uint32_t>(members.size()));
+    if (task.strays != nullptr && *task.strays) return;
     if (&members == &task.deal.members(slab_) && !task.filters.any() && task.taker == nullptr)
         name(device, task, input);
     algorithm->find(input, filters_of(task.filters, members), pairs_, counts_);
@@ -130,6 +140,7 @@ void SlabWorker::find(const SlabTask& task, std::size_t s) {
     } else if (task.taker != nullptr) {
         stream(task, s);
     } else {
+        if (task.keys) pairs_.accept_keys(*task.keys);
         search(task, task.deal.members(s));
         found_ = pairs_.size();
     }

@@ -1,11 +1,13 @@
 // The pairs of one slab on one device.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "clinch/broad_phase.hpp"
@@ -29,8 +31,13 @@ struct SlabTask {
     const AlgorithmRow& row;
     View<const Aabb> boxes;
     const FilterInput& filters;
-    const SlabDeal& deal;
+    SlabDeal& deal;
     bool counts_only;
+    /// As what lists of names may come; the same from all slabs, so that they can be merged as they are.
+    std::optional<KeyLayout> keys;
+    /// Not null: boxes may have moved since the deal. Set where one has moved into a slab that it is no member of: then
+    /// pairs are missing, and all is to be done again after another deal. Not where they are only counted.
+    std::atomic<bool>* strays = nullptr;
     const PairTaker* taker = nullptr;  ///< else workers keep their pairs
 };
 
@@ -46,11 +53,11 @@ public:
     /// As its algorithms are to have them.
     BroadPhaseOptions& options() noexcept { return options_; }
 
-    /// Finds the pairs of slab s, or only counts them. Opens the device if need be.
+    /// Finds the pairs of slab s, or only counts them. Opens the device if need be. Stops early once there are strays.
     void find(const SlabTask& task, std::size_t s);
 
     /// What was found.
-    SlabList pairs() const noexcept { return {pairs_.view(), counts_.named}; }
+    SlabList pairs() const noexcept { return {pairs_.view(), counts_.named, pairs_.keys()}; }
     /// How many pairs were found in the slab; of a stream, those that belong to it.
     std::uint64_t found() const noexcept { return found_; }
     /// How many of them belong to it; only where they were counted.
@@ -64,7 +71,7 @@ private:
     void count(const SlabTask& task, std::size_t s);
     void stream(const SlabTask& task, std::size_t s);
     void search(const SlabTask& task, const std::vector<std::uint32_t>& members);
-    const Buffer& send(Device& device, View<const Aabb> boxes, const std::vector<std::uint32_t>& members);
+    const Buffer& send(Device& device, const SlabTask& task, const std::vector<std::uint32_t>& members);
     void name(Device& device, const SlabTask& task, BoxInput& input);
     FilterInput filters_of(const FilterInput& filters, const std::vector<std::uint32_t>& members);
 

@@ -43,16 +43,6 @@ Slabs slabs_across(int axis, const std::vector<Aabb>& sample, const std::vector<
 
 }  // namespace
 
-SlabSpan Slabs::span_of(float min, float max) const noexcept {
-    SlabSpan span{0, 0};
-    for (const float cut : cuts) {
-        span.first = static_cast<std::uint8_t>(span.first + (min >= cut ? 1 : 0));
-        span.last = static_cast<std::uint8_t>(span.last + (max >= cut ? 1 : 0));
-    }
-    span.last = std::max(span.first, span.last);
-    return span;
-}
-
 Slabs choose_slabs(View<const Aabb> boxes, const std::vector<double>& fractions) {
     Slabs best;
     const std::vector<Aabb> sample = sample_of(boxes, std::min(sample_size, boxes.size()));
@@ -79,7 +69,7 @@ void each_of(std::size_t block, std::size_t boxes, const What& what) {
 
 bool SlabDeal::keep(View<const Aabb> boxes) {
     const std::size_t n = boxes.size(), blocks = (n + boxes_a_block - 1) / boxes_a_block;
-    if (n != spans_.size() || members_.size() != slabs_.count()) return false;
+    if (!is_of(n)) return false;
     std::vector<std::uint8_t> strays(blocks, 0);
     parallel_for(blocks, blocks > 1, [&](std::size_t block) {
         unsigned stray = 0;

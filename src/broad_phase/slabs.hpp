@@ -34,7 +34,15 @@ struct Slabs {
     }
 
 private:
-    SlabSpan span_of(float min, float max) const noexcept;
+    SlabSpan span_of(float min, float max) const noexcept {
+        SlabSpan span{0, 0};
+        for (const float cut : cuts) {
+            span.first = static_cast<std::uint8_t>(span.first + (min >= cut ? 1 : 0));
+            span.last = static_cast<std::uint8_t>(span.last + (max >= cut ? 1 : 0));
+        }
+        span.last = std::max(span.first, span.last);
+        return span;
+    }
 };
 
 /// Slabs in which boxes begin in proportion to `fractions` (which add up to 1; at most Slabs::most of them), across the
@@ -51,6 +59,15 @@ public:
     /// For boxes that moved since: keeps cuts and members, in one pass. False if it cannot: there are more or fewer
     /// boxes, or one reaches into a slab that it is no member of.
     bool keep(View<const Aabb> boxes);
+    /// Whether look() may take the place of keep(): there are as many boxes as were dealt.
+    bool is_of(std::size_t boxes) const noexcept { return boxes == spans_.size() && members_.size() == slabs_.count(); }
+    /// keep(), box by box: how `box`, a member of slab s, lies now. False if it reaches into a slab that it is no
+    /// member of. After all members of all slabs were looked at, keep() would change nothing. Slabs side by side.
+    bool look(std::size_t s, std::uint32_t number, const Aabb& box) noexcept {
+        const SlabSpan span = slabs_.span_of(box), in = member_of_[number];
+        if (in.first == s) spans_[number] = span;  // by one slab alone
+        return span.first >= in.first && span.last <= in.last;
+    }
     const Slabs& slabs() const noexcept { return slabs_; }
     /// Another one after each deal(), none of them 0.
     std::uint64_t version() const noexcept { return version_; }

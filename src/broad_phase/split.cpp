@@ -20,6 +20,9 @@ namespace {
 // Less than this, by the boxes that several devices have, does not pay.
 constexpr double least_speed_up = 1.3;
 
+// Boxes that stray do so again soon: they move.
+constexpr int calls_after_strays = 16;
+
 std::vector<double> guesses_of(const Context::Impl& context) {
     std::vector<double> guesses;
     for (const DeviceInfo& info : context.infos) guesses.push_back(guessed_speed(info));
@@ -101,10 +104,9 @@ void BroadSplit::prepare(const std::vector<std::size_t>& crew) {
     }
 }
 
-// Gives each of the crew a slab: that of the last call if it still has the right share. False if it does not pay.
+// Gives each of the crew a slab. False if it does not pay.
 bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& crew) {
     const std::vector<double> fractions = fractions_of(crew);
-    if (crew == dealt_to_ && SteadyShares::may_stay(dealt_, fractions) && deal_.keep(boxes)) return true;
     const Slabs slabs = choose_slabs(boxes, fractions);
     if (forced_.empty() && crew.size() > 1 && static_cast<double>(crew.size()) < least_speed_up * (1.0 + slabs.copies))
         return false;
@@ -113,6 +115,20 @@ bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& cr
     dealt_to_ = crew;
     dealt_ = fractions;
     return true;
+}
+
+// The slabs for this call: those of the last one if they still have the right shares. They are right if all boxes stay
+// in those that they are members of. Workers see that when they gather their boxes, which saves a pass over all, but
+// then some may have worked for nothing; hence not soon after boxes have strayed.
+BroadSplit::Members BroadSplit::members_for(View<const Aabb> boxes, const std::vector<std::size_t>& crew,
+                                            bool look_first) {
+    if (crew == dealt_to_ && SteadyShares::may_stay(dealt_, fractions_of(crew)) && deal_.is_of(boxes.size())) {
+        if (!look_first && calls_looked_first_ == 0) return Members::ToBeSeen;
+        calls_looked_first_ = std::max(0, calls_looked_first_ - 1);
+        if (deal_.keep(boxes)) return Members::Right;
+        calls_looked_first_ = calls_after_strays;
+    }
+    return deal(boxes, crew) ? Members::Right : Members::NotWorth;
 }
 
 void BroadSplit::start_call() {
@@ -126,14 +142,40 @@ bool BroadSplit::find(const AlgorithmRow& row, BoxInput& boxes, const FilterInpu
     start_call();
     const std::vector<std::size_t> crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
-    if (!deal(on_host, crew)) return false;
+    const Members members = members_for(on_host, crew, pairs.counts_only());
+    if (members == Members::NotWorth) return false;
     prepare(crew);
-    const SlabTask task{row, on_host, filters, deal_, pairs.counts_only()};
+    std::atomic<bool> strays{false};
+    SlabTask task{row, on_host, filters, deal_, pairs.counts_only(), keys_for(boxes.count()), nullptr};
+    if (members == Members::ToBeSeen) task.strays = &strays;
     run(task);
+    if (strays) {
+        calls_looked_first_ = calls_after_strays;
+        forget_pairs();
+        if (!deal(on_host, crew)) return false;
+        task.strays = nullptr;
+        run(task);
+    }
     measure();
     gather(task.counts_only, pairs, counts);
     check_limit(pairs.size(), options_);
     return true;
+}
+
+// The keys that suit the longest list of the last call, or at first, so many pairs a box; none if not all devices have
+// them: then pairs are what can be merged at once.
+std::optional<KeyLayout> BroadSplit::keys_for(std::uint64_t boxes) const {
+    constexpr std::uint64_t guessed_pairs_a_box = 8;
+    const DeviceInfo* widest = nullptr;
+    std::uint64_t most = 0;
+    for (const auto& worker : workers_) {
+        const DeviceInfo& info = context_.infos[worker->device()];
+        if (!PairSort::packs_on(info)) return std::nullopt;
+        if (widest == nullptr || info.compute_units > widest->compute_units) widest = &info;
+        most = std::max(most, worker->found());
+    }
+    return PairSort::layout_for(most > 0 ? most : boxes * guessed_pairs_a_box, static_cast<std::uint32_t>(boxes),
+                                *widest);
 }
 
 // All slabs; those of a device that fails once more, on others.
@@ -210,7 +252,8 @@ void BroadSplit::throw_limit(const SlabTask& task) {
         worker->forget_pairs();
         worker->options().max_pairs = std::numeric_limits<std::uint64_t>::max();
     }
-    run({task.row, task.boxes, task.filters, task.deal, true});
+    if (task.strays != nullptr && !deal_.keep(task.boxes)) deal_.deal(task.boxes, Slabs(deal_.slabs()));
+    run({task.row, task.boxes, task.filters, task.deal, true, std::nullopt, nullptr});
     std::uint64_t pairs = 0;
     for (const auto& worker : workers_) pairs += worker->counted();
     check_limit(pairs, options_);
@@ -234,12 +277,12 @@ std::uint64_t BroadSplit::stream(const AlgorithmRow& row, BoxInput& boxes, const
     start_call();
     if (crew.empty()) crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
-    if (!deal(on_host, crew)) {
+    if (members_for(on_host, crew, true) == Members::NotWorth) {
         crew.resize(1);
-        deal(on_host, crew);
+        members_for(on_host, crew, true);
     }
     prepare(crew);
-    const SlabTask task{row, on_host, filters, deal_, false, &taker};
+    const SlabTask task{row, on_host, filters, deal_, false, std::nullopt, nullptr, &taker};
     std::vector<std::size_t> which(workers_.size());
     std::iota(which.begin(), which.end(), 0);
     const std::vector<std::exception_ptr> thrown = run_once(task, which);

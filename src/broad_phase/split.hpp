@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,8 +30,8 @@ public:
     /// Whether `count` boxes are worth more than one device to `row`. Opens none.
     bool pays(const AlgorithmRow& row, std::uint64_t count) const;
     /// As BroadPhaseAlgorithm::find, to the byte; `pairs` keeps or counts them. A device that fails is retired, and
-    /// another one does its slab; when none is left what it threw leaves. False, with nothing done, if so many boxes
-    /// reach over the cuts that it does not pay.
+    /// another one does its slab; when none is left what it threw leaves. False, with no pairs found, if so many boxes
+    /// reach over the cuts that it does not pay; devices may have failed even so.
     bool find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
               FindCounts& counts);
     /// The same pairs, not kept but handed over as they are found, from the devices of `crew`, or, if that is empty,
@@ -49,11 +50,15 @@ public:
     void forget_pairs();
 
 private:
+    // Of the slabs for a call. ToBeSeen: workers tell whether they are right.
+    enum class Members { NotWorth, Right, ToBeSeen };
     void start_call();
     std::vector<std::size_t> crew_for(const AlgorithmRow& row, std::uint64_t count) const;
     std::vector<double> fractions_of(const std::vector<std::size_t>& crew) const;
     bool deal(View<const Aabb> boxes, const std::vector<std::size_t>& crew);
+    Members members_for(View<const Aabb> boxes, const std::vector<std::size_t>& crew, bool look_first);
     void prepare(const std::vector<std::size_t>& crew);
+    std::optional<KeyLayout> keys_for(std::uint64_t boxes) const;
     void run(const SlabTask& task);
     std::vector<std::exception_ptr> run_once(const SlabTask& task, const std::vector<std::size_t>& which);
     std::vector<std::size_t> reassign(const AlgorithmRow& row, const std::vector<std::size_t>& which,
@@ -70,6 +75,7 @@ private:
     SlabDeal deal_;
     std::vector<std::size_t> dealt_to_;                 // who has which slab of it
     std::vector<double> dealt_;                         // the shares it was made for
+    int calls_looked_first_ = 0;                        // to come, that look for strays before all else
     std::vector<std::unique_ptr<SlabWorker>> workers_;  // of each slab
     std::vector<std::string> warnings_;
 };

@@ -5,9 +5,12 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
 #include <cstddef>
+#include <mutex>
+#include <vector>
 
 namespace clinch::detail {
 
@@ -51,6 +54,50 @@ void parallel_rows(std::size_t count, std::size_t least, const Body& body) {
         stretch({0, count});
     else
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 64), stretch, tbb::static_partitioner());
+}
+
+/// For work whose place in a result depends on all before it: of each i < count, make(i, room) is called, in any order
+/// and on any thread; then place(room), in ascending order of i, one at a time; then put(room), in any order. Threads
+/// do not wait for each other. `Room` is work memory of one i, which others use before and after: there are few.
+template <class Room, class Make, class Place, class Put>
+void parallel_in_order(std::size_t count, const Make& make, const Place& place, const Put& put) {
+    std::vector<Room> rooms(2 * host_threads());
+    std::vector<Room*> unused;
+    unused.reserve(rooms.size());
+    for (Room& room : rooms) unused.push_back(&room);
+    std::mutex mutex;  // of `unused`
+    struct Item {
+        std::size_t i;
+        Room* room;
+    };
+    std::size_t next = 0;
+    const auto begin = [&](tbb::flow_control& flow) {
+        if (next == count) {
+            flow.stop();
+            return Item{0, nullptr};
+        }
+        const std::lock_guard<std::mutex> lock(mutex);
+        const Item item{next++, unused.back()};
+        unused.pop_back();
+        return item;
+    };
+    const auto made = [&](Item item) {
+        make(item.i, *item.room);
+        return item;
+    };
+    const auto placed = [&](Item item) {
+        place(*item.room);
+        return item;
+    };
+    const auto finish = [&](Item item) {
+        put(*item.room);
+        const std::lock_guard<std::mutex> lock(mutex);
+        unused.push_back(item.room);
+    };
+    constexpr tbb::filter_mode in_order = tbb::filter_mode::serial_in_order, any = tbb::filter_mode::parallel;
+    tbb::parallel_pipeline(
+        rooms.size(), tbb::make_filter<void, Item>(in_order, begin) & tbb::make_filter<Item, Item>(any, made) &
+                          tbb::make_filter<Item, Item>(in_order, placed) & tbb::make_filter<Item, void>(any, finish));
 }
 
 }  // namespace clinch::detail

@@ -2,8 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "src/device/device.hpp"
+#include "src/primitives/pair_keys.hpp"
 #include "src/primitives/scan.hpp"
 
 namespace clinch::detail {
@@ -20,6 +24,20 @@ public:
     /// (up to 6 for more bodies). Waits, and sorts on the host, where loops end early.
     void sort(const Buffer& pairs, std::uint64_t count, std::uint32_t bodies);
 
+    /// Whether sort_to_keys() runs on a device: one with lanes, where loops do not end early.
+    static bool packs_on(const DeviceInfo& info);
+    /// The layout of keys that suits about `pairs` pairs of numbers below `bodies` on a device where sort_to_keys()
+    /// runs; none if they do not fit in 32 bits. It is right for any number of pairs on any such device.
+    static std::optional<KeyLayout> layout_for(std::uint64_t pairs, std::uint32_t bodies, const DeviceInfo& info);
+    /// Sorted pairs as keys, in memory of this sort, until it sorts again.
+    struct Packed {
+        Mapping keys;
+        std::vector<std::uint32_t> starts;  ///< of the buckets, and the end
+    };
+    /// As sort() of pairs of numbers that fit the layout, but leaves them packed: in place of the write of all pairs,
+    /// one of half as much in the caches. What was in `pairs` is lost. Waits.
+    Packed sort_to_keys(const Buffer& pairs, std::uint64_t count, const KeyLayout& layout);
+
 private:
     struct Kernels {
         Kernel count, scatter, buckets;
@@ -31,11 +49,14 @@ private:
     };
     void sort_on_host(const Buffer& pairs, std::uint64_t count);
     Kernels& kernels(bool packed);
-    Shape shape_for(std::uint64_t count, std::uint32_t bodies) const;
+    std::string defines(bool packed) const;
+    static Shape shape_for(std::uint64_t count, std::uint32_t bodies, const DeviceInfo& info);
+    void scatter(const Buffer& pairs, std::uint64_t count, const Shape& s);
 
     Device& device_;
     Scan scan_;
     Kernels packed_, wide_;
+    Kernel key_buckets_;
     Buffer keys_, counts_, offsets_;
 };
 

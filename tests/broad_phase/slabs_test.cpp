@@ -34,15 +34,28 @@ std::vector<Pair> pairs_in(const std::vector<Aabb>& boxes, const std::vector<std
     return test::pairs_by_hand(own);
 }
 
-// `named`: of each slab, whether its list is handed over with names of boxes in place of their places.
+// How the list of a slab is handed over: pairs of places, of names, or those as keys.
+enum class As { Places, Names, Keys };
+
 std::vector<Pair> merged(const SlabDeal& deal, std::vector<std::vector<Pair>> found, bool sorted,
-                         const std::vector<bool>& named = {}) {
+                         const std::vector<As>& as = {}) {
+    constexpr KeyLayout layout{600, 6, 16};
     SlabLists lists;
+    std::vector<std::vector<std::uint32_t>> keys(found.size()), starts(found.size());
     for (std::size_t s = 0; s < found.size(); ++s) {
-        const bool is_named = s < named.size() && named[s];
-        if (is_named)
+        const As this_as = s < as.size() ? as[s] : As::Places;
+        if (this_as != As::Places)
             for (Pair& pair : found[s]) pair = {deal.members(s)[pair.a], deal.members(s)[pair.b]};
-        lists.push_back({found[s], is_named});
+        if (this_as != As::Keys) {
+            lists.push_back({found[s], this_as == As::Names, {}});
+            continue;
+        }
+        for (std::uint32_t bucket = 0; bucket <= layout.buckets; ++bucket)
+            starts[s].push_back(static_cast<std::uint32_t>(
+                std::lower_bound(found[s].begin(), found[s].end(), Pair{bucket << layout.shift, 0}) -
+                found[s].begin()));
+        for (const Pair& pair : found[s]) keys[s].push_back((pair.a & 63u) << layout.b_bits | pair.b);
+        lists.push_back({{}, true, {layout, keys[s], starts[s]}});
     }
     PairList list;
     merge_slabs(deal, lists, sorted, list);
@@ -72,17 +85,22 @@ TEST_CASE("lists of slabs become the list of all boxes, each pair once", "[host]
                 found.push_back(pairs_in(boxes, deal.members(s)));
             }
             const std::vector<Pair> expected = test::pairs_by_hand(boxes);
-            std::vector<bool> named;
-            for (std::size_t s = 0; s < count; ++s) named.push_back(random.below(2) == 0);
+            std::vector<As> as, named, any_as;
+            for (std::size_t s = 0; s < count; ++s) {
+                as.push_back(random.below(2) == 0 ? As::Places : As::Names);
+                named.push_back(random.below(2) == 0 ? As::Names : As::Keys);
+                any_as.push_back(static_cast<As>(random.below(3)));
+            }
             CHECK(merged(deal, found, true) == expected);
-            CHECK(merged(deal, found, true, named) == expected);
-            CHECK(merged(deal, found, true, std::vector<bool>(count, true)) == expected);
+            for (const std::vector<As>& each :
+                 {as, named, any_as, std::vector<As>(count, As::Names), std::vector<As>(count, As::Keys)})
+                CHECK(merged(deal, found, true, each) == expected);
             for (std::vector<Pair>& list : found)
                 for (std::size_t i = list.size(); i > 1; --i) std::swap(list[i - 1], list[random.below(i)]);
             std::vector<Pair> any = merged(deal, found, false);
             std::sort(any.begin(), any.end());
             CHECK(any == expected);
-            any = merged(deal, found, false, named);
+            any = merged(deal, found, false, as);
             std::sort(any.begin(), any.end());
             CHECK(any == expected);
         }
@@ -106,7 +124,18 @@ TEST_CASE("members stay while boxes move a little, and the list is right", "[hos
                     box.max[d] += way;
                 }
             const std::vector<std::uint32_t> before = deal.members(1);
-            if (deal.keep(boxes)) {
+            // What slabs see, each of its members, is what a look at all boxes sees.
+            SlabDeal looked = deal;
+            bool stayed = looked.is_of(boxes.size());
+            for (std::size_t s = 0; s < looked.count(); ++s)
+                for (const std::uint32_t i : looked.members(s)) stayed &= looked.look(s, i, boxes[i]);
+            const bool keeps = deal.keep(boxes);
+            CHECK(stayed == keeps);
+            for (std::uint32_t i = 0; i < boxes.size(); ++i) {
+                REQUIRE(looked.span(i).first == deal.span(i).first);
+                REQUIRE(looked.span(i).last == deal.span(i).last);
+            }
+            if (keeps) {
                 CHECK(deal.members(1) == before);
                 ++kept;
             } else {
@@ -119,6 +148,7 @@ TEST_CASE("members stay while boxes move a little, and the list is right", "[hos
         }
         boxes.pop_back();
         CHECK_FALSE(deal.keep(boxes));
+        CHECK_FALSE(deal.is_of(boxes.size()));
     }
     CHECK(kept > 5);
     CHECK(dealt > 10);
@@ -137,7 +167,8 @@ TEST_CASE("many pairs are merged in many parts", "[host]") {
     const std::vector<Pair> expected = test::pairs_by_sweep(boxes);
     REQUIRE(expected.size() > 70000);
     CHECK(merged(deal, found, true) == expected);
-    CHECK(merged(deal, found, true, {true, true, true}) == expected);
+    for (const As as : {As::Names, As::Keys}) CHECK(merged(deal, found, true, std::vector<As>(3, as)) == expected);
+    CHECK(merged(deal, found, true, {As::Keys, As::Names, As::Keys}) == expected);
     std::vector<Pair> any = merged(deal, found, false);
     std::sort(any.begin(), any.end());
     CHECK(any == expected);

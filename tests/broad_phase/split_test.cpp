@@ -186,6 +186,73 @@ TEST_CASE("a split names what is no box, and the true count of too many pairs", 
     }
 }
 
+TEST_CASE("boxes move from call to call, within their slabs and out of them: the oracle's bytes",
+          "[device][together]") {
+    const std::uint64_t seed = 81;
+    INFO("seed " << seed);
+    test::Random random(seed);
+    Context context = test::several(3);
+    for (const std::string& name : names_for(context)) {
+        BroadPhaseOptions options;
+        options.algorithm = name;
+        Splitter splitter(context, options);
+        std::vector<Aabb> boxes = scenes::make_boxes("uniform", 800, 18);
+        for (int call = 0; call < 30; ++call) {
+            INFO(name << ", call " << call);
+            // All move a little, or one far; after a long rest, when workers look for strays themselves, and soon
+            // again.
+            const bool one = call == 23 || call == 26, all = call == 2 || call == 4 || call == 5;
+            for (std::size_t k = 0; k < (one ? 1 : all ? boxes.size() : 0); ++k) {
+                Aabb& box = boxes[one ? random.below(boxes.size()) : k];
+                for (int d = 0; d < 3; ++d) {
+                    const double far = one ? (box.min[d] > 10.0f ? -9.0 : 9.0) : random.between(-0.3, 0.3);
+                    box.min[d] += static_cast<float>(far);
+                    box.max[d] += static_cast<float>(far);
+                }
+            }
+            const std::vector<Pair> expected = test::pairs_by_hand(boxes);
+            if (call % 11 == 5) CHECK(splitter.get().count(boxes) == expected.size());
+            CHECK(test::same(splitter.get().find(boxes), expected));
+            CHECK(splitter.get().report().broad_split.size() == 3);
+        }
+    }
+}
+
+TEST_CASE("boxes that stray in a call that finds too many pairs are counted right", "[device]") {
+    Context context = test::several(3);
+    const std::vector<Aabb> boxes = scenes::make_boxes("uniform", 1500, 19);
+    std::vector<Aabb> moved = boxes;
+    for (std::size_t i = 0; i < 30; ++i) moved[i] = {{0, 0, 0}, {20, 20, 20}};  // into all slabs
+    const std::uint64_t few = test::pairs_by_hand(boxes).size(), many = test::pairs_by_hand(moved).size();
+    REQUIRE(many > 2 * few);
+    for (const std::string& name : names_for(context))
+        for (const std::uint64_t most : {few, many - 1}) {
+            INFO(name << ", at most " << most);
+            BroadPhaseOptions options;
+            options.algorithm = name;
+            options.max_pairs = most;
+            Splitter splitter(context, options);
+            CHECK(splitter.get().find(boxes).size() == few);
+            CHECK_THROWS_WITH(splitter.get().find(moved),
+                              Catch::StartsWith("there are " + std::to_string(many) + " pairs and at most "));
+            CHECK(test::same(splitter.get().find(boxes), test::pairs_by_hand(boxes)));
+        }
+}
+
+TEST_CASE("boxes that come together go to one device", "[device]") {
+    Context context = test::several(2);
+    context.impl().least_boxes_a_device = 1;
+    BroadPhaseOptions options;
+    options.algorithm = "brute";
+    BroadPhase broad_phase(context, options);
+    std::vector<Aabb> boxes = scenes::make_boxes("uniform", 1000, 20);
+    CHECK(test::same(broad_phase.find(boxes), test::pairs_by_hand(boxes)));
+    CHECK(broad_phase.report().broad_split.size() == 2);
+    for (Aabb& box : boxes) box = {{1, 1, 1}, {2, 2, 2}};
+    CHECK(broad_phase.find(boxes).size() == 1000u * 999u / 2u);
+    CHECK(broad_phase.report().broad_split.empty());
+}
+
 TEST_CASE("no device is opened for boxes that are too few for it", "[device]") {
     Context context = test::several(3);
     context.impl().least_boxes_a_device = 1000;

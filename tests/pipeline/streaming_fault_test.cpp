@@ -79,7 +79,7 @@ TEST_CASE("a device that fails while a step streams is retired and the contacts 
             CL_SUCCESS);
         CHECK((step_afresh(broad_devices).first == right));
         for (std::size_t device = 0; device < devices; ++device) {
-            REQUIRE(calls[device] > 5);
+            if (calls[device] < 5) continue;  // the others were done before it had begun
             for (int k = 0; k < 10; ++k) {
                 const std::size_t number = k == 0 ? 0 : random.below(calls[device]);
                 INFO("broad phase on " << broad_devices << ", device " << device << " fails at call " << number);
@@ -98,6 +98,7 @@ TEST_CASE("a device that fails while a step streams is retired and the contacts 
             }
         }
     }
+    CHECK(tried >= 20);
     CHECK(struck > tried / 2);
 }
 
