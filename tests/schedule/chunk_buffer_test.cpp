@@ -23,6 +23,9 @@ TEST_CASE("a chunk buffer keeps the order and ends when its producers do", "[hos
     CHECK(buffer.take() == 1);
     CHECK(buffer.put(3));
     CHECK(buffer.put(4));
+    int more = 6;
+    CHECK_FALSE(buffer.try_put(more));
+    CHECK(more == 6);
     buffer.add_producer();
     buffer.producer_done();
     CHECK(buffer.take() == 2);
@@ -31,6 +34,10 @@ TEST_CASE("a chunk buffer keeps the order and ends when its producers do", "[hos
     CHECK(buffer.take() == 4);
     CHECK_FALSE(buffer.take());
     CHECK_FALSE(buffer.cancelled());
+    CHECK_FALSE(buffer.try_take());
+    int item = 5;
+    CHECK(buffer.try_put(item));
+    CHECK(buffer.try_take() == 5);
     CHECK(buffer.most_held() == 3);
     CHECK_THROWS_AS(ChunkBuffer<int>(0), Error);
 }
@@ -41,6 +48,9 @@ TEST_CASE("a cancelled chunk buffer gives and takes nothing", "[host][schedule]"
     buffer.cancel();
     CHECK_FALSE(buffer.take());
     CHECK_FALSE(buffer.put(std::make_unique<int>(2)));
+    std::unique_ptr<int> dropped = std::make_unique<int>(3);
+    CHECK(buffer.try_put(dropped));
+    CHECK_FALSE(buffer.try_take());
     CHECK(buffer.cancelled());
 }
 
@@ -71,7 +81,8 @@ struct Streamed {
     bool cancelled = false;
 };
 
-// Producers put 0 .. 999 between them; one side may throw at a random place.
+// Producers put 0 .. 999 between them, some of them taking items themselves while there is no room; one side may throw
+// at a random place.
 Streamed stream(std::uint64_t seed, Fails fails) {
     test::Random random(seed);
     const std::size_t producers = 1 + random.below(4), consumers = 1 + random.below(4);
@@ -89,11 +100,18 @@ Streamed stream(std::uint64_t seed, Fails fails) {
     };
     std::vector<std::thread> threads;
     for (std::size_t i = 0; i < producers; ++i)
-        threads.emplace_back(guarded, [&] {
+        threads.emplace_back(guarded, [&, helps = fails != Fails::Consumer && random.below(2) == 0] {
             const ChunkBuffer<std::uint32_t>::Producer producer(buffer);
             for (std::uint32_t k = next++; k < 1000; k = next++) {
                 if (fails == Fails::Producer && k == fails_at) throw std::runtime_error("producer");
-                if (!buffer.put(k)) return;
+                if (helps) {
+                    std::uint32_t item = k;
+                    while (!buffer.try_put(item))
+                        if (const std::optional<std::uint32_t> other = buffer.try_take()) ++taken[*other];
+                    if (buffer.cancelled()) return;
+                } else if (!buffer.put(k)) {
+                    return;
+                }
                 ++put;
             }
         });
