@@ -22,7 +22,8 @@ struct PipelineOptions {
     /// Broad and narrow phase at once: pairs go from one to the other in chunks and are not kept, so that memory for
     /// them does not grow with their number: StepResult::pairs() is empty, and Report::stream tells what went by. Where
     /// there are several devices some find pairs, as many as measured times say is best, and the others contacts; who
-    /// is done early helps. The contacts are, byte for byte, those of a step that does not stream. A step whose scene
+    /// is done early helps. The contacts are, byte for byte, those of a step that does not stream; with Order::Any they
+    /// come in any order, those of a pair together, which saves a copy of them. A step whose scene
     /// has changed finds all pairs anew. Needs `contacts`; with events or a warm start it is InvalidArgument.
     bool streaming = false;
     /// Start the narrow phase of each step from what decided the pairs in the last one: see WarmStart.
@@ -44,8 +45,8 @@ public:
     /// the device when first asked for: 24 bytes a row.
     View<const Aabb> boxes() const;
     const Report& report() const noexcept;
-    /// With PipelineOptions::contacts: the contacts of pairs(), in their order (ascending with
-    /// PipelineOptions::streaming); see NarrowPhase::find. Empty without.
+    /// With PipelineOptions::contacts: the contacts of pairs(), in their order (with
+    /// PipelineOptions::streaming ascending, or any); see NarrowPhase::find. Empty without.
     View<const Contact> contacts() const noexcept;
     /// What the narrow phase did in this step; of a step in which nothing had changed the counts are those of the
     /// step that found the contacts, and the times are 0.

@@ -1,8 +1,7 @@
 #include "src/narrow_phase/contact_order.hpp"
 
 #include <algorithm>
-#include <cstddef>
-#include <functional>
+#include <tuple>
 
 #include "src/primitives/host_parallel.hpp"
 
@@ -11,65 +10,43 @@ namespace {
 
 constexpr std::size_t least_rows_a_part = 4096, most_parts = 512;
 
-// A stretch of a list.
-using Block = View<const Contact>;
-
-std::vector<Block> blocks_of(const std::vector<View<const Contact>>& lists) {
-    std::size_t rows = 0;
-    for (const View<const Contact>& list : lists) rows += list.size();
-    const std::size_t size = std::max(least_rows_a_part, rows / most_parts + 1);
-    std::vector<Block> blocks;
-    for (const View<const Contact>& list : lists)
-        for (std::size_t first = 0; first < list.size(); first += size)
-            blocks.emplace_back(list.data() + first, std::min(size, list.size() - first));
-    return blocks;
-}
-
-// Parts are ranges of a, as many as there are blocks.
-class Parts {
-public:
-    Parts(std::uint32_t bodies, std::size_t count) : bodies_(bodies), count_(count) {}
-    std::size_t of(const Contact& c) const { return static_cast<std::size_t>(std::uint64_t{c.a} * count_ / bodies_); }
-
-private:
-    std::uint64_t bodies_, count_;
-};
-
 }  // namespace
 
-void ContactOrder::put(const std::vector<View<const Contact>>& lists, std::uint32_t bodies, Contact* to) {
-    const std::vector<Block> blocks = blocks_of(lists);
-    const std::size_t count = blocks.size();
-    const Parts part(bodies, count);
+// Rows are cut into blocks, and bodies into as many parts. Each block counts and then places its rows by parts; each
+// part is put in order.
+void ContactOrder::put(View<const Contact> rows, View<const std::uint64_t> keys, std::uint32_t bodies, Contact* to) {
+    const std::size_t n = rows.size(), size = std::max(least_rows_a_part, n / most_parts + 1),
+                      count = (n + size - 1) / size;
+    const auto part_of = [&](std::uint64_t key) { return static_cast<std::size_t>((key >> 32) * count / bodies); };
+    const auto each = [&](std::size_t block, const auto& what) {
+        for (std::size_t i = block * size, end = std::min(n, i + size); i < end; ++i) what(i);
+    };
     at_.assign(count * count, 0);  // rows of each part in each block, then their places
     std::size_t* const at = at_.data();
-    parallel_for(count, count > 1, [&](std::size_t k) {
-        for (const Contact& c : blocks[k]) ++at[k * count + part.of(c)];
-    });
+    parallel_for(count, count > 1,
+                 [&](std::size_t k) { each(k, [&](std::size_t i) { ++at[k * count + part_of(keys[i])]; }); });
     std::vector<std::size_t> firsts;
-    std::size_t rows = 0;
+    std::size_t before = 0;
     for (std::size_t p = 0; p < count; ++p) {
-        firsts.push_back(rows);
+        firsts.push_back(before);
         for (std::size_t k = 0; k < count; ++k) {
             const std::size_t there = at[k * count + p];
-            at[k * count + p] = rows;
-            rows += there;
+            at[k * count + p] = before;
+            before += there;
         }
     }
-    firsts.push_back(rows);
-    if (places_.size() < rows) places_.resize(rows + rows / 8);
+    firsts.push_back(before);
+    if (places_.size() < n) places_.resize(n + n / 8);
     Place* const places = places_.data();
     parallel_for(count, count > 1, [&](std::size_t k) {
-        for (const Contact& c : blocks[k]) places[at[k * count + part.of(c)]++] = {std::uint64_t{c.a} << 32 | c.b, &c};
+        each(k, [&](std::size_t i) { places[at[k * count + part_of(keys[i])]++] = {keys[i], i}; });
     });
     parallel_for(count, count > 1, [&](std::size_t p) {
         Place* const first = places + firsts[p];
         Place* const end = places + firsts[p + 1];
-        // Rows of one pair stand in one list, one behind the other.
-        std::sort(first, end, [](const Place& x, const Place& y) {
-            return x.key != y.key ? x.key < y.key : std::less<const Contact*>()(x.row, y.row);
-        });
-        std::transform(first, end, to + firsts[p], [](const Place& place) { return *place.row; });
+        std::sort(first, end,
+                  [](const Place& x, const Place& y) { return std::tie(x.key, x.row) < std::tie(y.key, y.row); });
+        std::transform(first, end, to + firsts[p], [&](const Place& place) { return rows[place.row]; });
     });
 }
 

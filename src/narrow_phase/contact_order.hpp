@@ -1,6 +1,7 @@
 // Contacts that were found in any order, put in that of their pairs.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -12,15 +13,17 @@ namespace clinch::detail {
 /// Keeps its memory from call to call.
 class ContactOrder {
 public:
-    /// Copies all rows of `lists` to `to`, ascending by a, then b, numbers below `bodies`. The rows of a pair must
-    /// stand together in one list, and stay in their order. On the host's threads: three reads of the lists, of which
-    /// the last is at random places, and one write.
-    void put(const std::vector<View<const Contact>>& lists, std::uint32_t bodies, Contact* to);
+    /// a, then b.
+    static std::uint64_t key(const Contact& c) noexcept { return std::uint64_t{c.a} << 32 | c.b; }
+
+    /// Copies all `rows` to `to`, ascending by their `keys`, whose a is below `bodies`; rows of one pair stay in their
+    /// order. On the host's threads: two reads of the keys, one of the rows, at random places, and one write.
+    void put(View<const Contact> rows, View<const std::uint64_t> keys, std::uint32_t bodies, Contact* to);
 
 private:
     struct Place {
-        std::uint64_t key;  // a, then b
-        const Contact* row;
+        std::uint64_t key;
+        std::size_t row;
     };
     std::vector<Place> places_;
     std::vector<std::size_t> at_;

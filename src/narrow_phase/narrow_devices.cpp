@@ -140,9 +140,12 @@ std::vector<std::size_t> NarrowDevices::begin_stream() {
     return alike();
 }
 
-void NarrowDevices::find_streamed(std::size_t device, const NarrowCall& call, NarrowResult& result) {
+std::pair<std::size_t, std::size_t> NarrowDevices::find_streamed(std::size_t device, const NarrowCall& call,
+                                                                 std::atomic<std::size_t>& next, NarrowResult& result) {
     NarrowMember& one = member(device);
-    one.worker().timed([&] { one.append_chunk(call, 0, call.pairs.size(), result); });
+    std::pair<std::size_t, std::size_t> rows;
+    one.worker().timed([&] { rows = one.put_chunk(call, next, result); });
+    return rows;
 }
 
 bool NarrowDevices::finish_stream(NarrowReport& report) {

@@ -1,10 +1,12 @@
 // The devices of a narrow phase: which of them a call is large enough for, and what happens when one fails.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <exception>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "clinch/narrow_phase.hpp"
@@ -30,9 +32,10 @@ public:
     bool find(const NarrowCall& call, NarrowResult& result, NarrowReport& report);
     /// A call begins whose pairs come while it runs: the devices that may work on it, the primary one first.
     std::vector<std::size_t> begin_stream();
-    /// What `device`, one of those, has of pairs of such a call, behind what `result` has. Opens it. In the thread of
-    /// the device; devices may be at it at once, each with a result of its own. Throws what went wrong.
-    void find_streamed(std::size_t device, const NarrowCall& call, NarrowResult& result);
+    /// Writes what `device`, one of those, finds of the pairs of such a call: NarrowMember::put_chunk(). Opens it. In
+    /// the thread of the device; devices may be at it at once. Throws what went wrong.
+    std::pair<std::size_t, std::size_t> find_streamed(std::size_t device, const NarrowCall& call,
+                                                      std::atomic<std::size_t>& next, NarrowResult& result);
     /// When all pairs are done: adds to the report what each device did. Whether any pair has a margin.
     bool finish_stream(NarrowReport& report);
     void shapes_changed() noexcept;

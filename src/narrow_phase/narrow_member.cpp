@@ -24,6 +24,17 @@ void NarrowMember::append_chunk(const NarrowCall& call, std::size_t first, std::
     worker_.share().ms.gather += gather.ms();
 }
 
+std::pair<std::size_t, std::size_t> NarrowMember::put_chunk(const NarrowCall& call, std::atomic<std::size_t>& next,
+                                                            NarrowResult& result) {
+    if (!worker_.began()) worker_.begin(call);
+    first_.solve(call, 0, call.pairs.size());
+    const Stopwatch gather;
+    const std::size_t count = first_.contacts().count(), first = next.fetch_add(count);
+    result.write_at(call, first, 2 * (first + count), first_.contacts());
+    worker_.share().ms.gather += gather.ms();
+    return {first, count};
+}
+
 void NarrowMember::do_chunk(const NarrowCall& call, std::uint32_t chunk, std::size_t first, std::size_t count,
                             ContactPlaces& places, NarrowResult& result) {
     ChunkWork& work = free_work(call, places, result);

@@ -1,10 +1,12 @@
 // One device's half of a narrow phase that may be split: its worker, the chunks in its hands, and what it sets aside.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "src/narrow_phase/chunk_work.hpp"
@@ -28,6 +30,11 @@ public:
     /// Does chunk number `chunk`, the pairs from `first` on, to its end and appends it to the result: for a call that
     /// has no other device.
     void append_chunk(const NarrowCall& call, std::size_t first, std::size_t count, NarrowResult& result);
+
+    /// Does all pairs of the call as one chunk and writes what they have to the next rows of the result, which several
+    /// members share: `next` is the first row that nobody has taken. Returns the first of its rows and how many.
+    std::pair<std::size_t, std::size_t> put_chunk(const NarrowCall& call, std::atomic<std::size_t>& next,
+                                                  NarrowResult& result);
 
     /// Does a chunk, tells `places` how much it has, and writes what may be written. An error leaves the chunks before
     /// in its hands.

@@ -34,6 +34,14 @@ public:
         const std::shared_lock<std::shared_mutex> lock(growing_);
         write(rows_.data() + first);
     }
+    /// Calls read(from) with the place of `count` rows from number `first` on, which write_at() has written, while
+    /// others write theirs.
+    template <class Read>
+    void read_at(std::size_t first, std::size_t count, const Read& read) {
+        if (count == 0) return;
+        const std::shared_lock<std::shared_mutex> lock(growing_);
+        read(rows_.data() + first);
+    }
     /// From now on there are so many rows.
     void resize(std::size_t size) {
         if (rows_.size() < size) rows_.resize(size);

@@ -38,7 +38,7 @@ PhaseStream::PhaseStream(Context::Impl& context, BroadPhase::Impl& broad, Narrow
     : context_(context),
       broad_(broad),
       options_(unordered(broad.options)),
-      narrow_(narrow),
+      narrow_(narrow, broad.options.order == Order::Sorted),
       split_(context, options_) {}
 
 // `alike`: devices that may work on the narrow phase, the primary one first.
