@@ -104,7 +104,6 @@ bool BroadPhase::Impl::measured(const char* algorithm, detail::BoxInput& boxes, 
     report.skipped.pairs_filtered = counts.pairs_filtered;
     report.skipped.static_pairs = counts.static_pairs;
     any_invalid = counts.invalid_boxes;
-    note_memory();
     report.ms.total = total.ms();
     return true;
 }
@@ -124,6 +123,7 @@ View<const Pair> BroadPhase::Impl::find(const detail::AlgorithmRow& row, detail:
     pairs.clear();
     run(row, boxes, filters, list_rejected);
     listed(boxes.count());
+    note_memory();
     return pairs.view();
 }
 
@@ -152,7 +152,8 @@ bool BroadPhase::Impl::find_split(const detail::AlgorithmRow& row, detail::BoxIn
             const std::lock_guard<std::mutex> lock(one);
             pairs.append(found.data(), found.size());
         };
-        split->stream(row, boxes, filters, {}, {take, pairs.piece()}, counts);
+        split->begin_stream(row, boxes, {});
+        split->stream(row, boxes, filters, {take, pairs.piece()}, counts);
     } else {
         const bool done = split->find(row, boxes, filters, pairs, counts);
         report.warnings.insert(report.warnings.end(), split->warnings().begin(), split->warnings().end());
@@ -241,6 +242,7 @@ bool BroadPhase::Impl::step(detail::BoxInput& boxes, const detail::Changes& chan
         leave_steps();
         return false;
     }
+    note_memory();
     report.skipped.unchanged = boxes.count() - std::min<std::uint64_t>(boxes.count(), changes.bodies.size());
     listed_boxes = boxes.count();
     if (options.events) events.change(incremental->added(), incremental->removed());
@@ -379,6 +381,7 @@ std::uint64_t BroadPhase::stream(View<const Aabb> boxes, const std::function<voi
             too_late = detail::cause_of(std::current_exception());
             return std::uint64_t{0};
         }
+        impl_->note_memory();
         return impl_->report.pairs;
     });
     if (too_late) std::rethrow_exception(too_late);
@@ -392,6 +395,7 @@ std::uint64_t BroadPhase::count(View<const Aabb> boxes, const FilterColumns& fil
         impl_->pairs.clear();
         impl_->pairs.count_only();
         impl_->run(impl_->choose(boxes.size(), seen(boxes, filters)), input, {filters, 0}, true);
+        impl_->note_memory();
         return impl_->report.pairs;
     });
 }

@@ -65,9 +65,11 @@ struct BroadPhase::Impl {
     /// The same into `pairs` as it is set up.
     void run(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
              bool list_rejected);
-    /// The same pairs to `take`, at most `piece` at a time, from one device or the host.
+    /// The same pairs to `take`, at most `piece` at a time. With a row of the host no device is touched.
     void stream(const detail::AlgorithmRow& row, detail::BoxInput& boxes, const detail::FilterInput& filters,
                 const detail::PairList::Taker& take, std::size_t piece, bool list_rejected);
+    /// Writes into the report what memory there is; not while devices work.
+    void note_memory();
 
 private:
     static constexpr std::size_t nowhere = ~std::size_t{0};
@@ -82,7 +84,6 @@ private:
     // After run() of these boxes. The list stays, elsewhere in memory.
     void begin_steps(detail::BoxInput& boxes, const detail::FilterInput& filters);
     void leave_steps();
-    void note_memory();
     template <class Search>
     bool measured(const char* algorithm, detail::BoxInput& boxes, const Search& search);
 };

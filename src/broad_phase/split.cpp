@@ -272,8 +272,7 @@ void BroadSplit::add_counts(FindCounts& counts) const {
     }
 }
 
-std::uint64_t BroadSplit::stream(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters,
-                                 std::vector<std::size_t> crew, const PairTaker& taker, FindCounts& counts) {
+void BroadSplit::begin_stream(const AlgorithmRow& row, BoxInput& boxes, std::vector<std::size_t> crew) {
     start_call();
     if (crew.empty()) crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
@@ -282,6 +281,11 @@ std::uint64_t BroadSplit::stream(const AlgorithmRow& row, BoxInput& boxes, const
         members_for(on_host, crew, true);
     }
     prepare(crew);
+}
+
+std::uint64_t BroadSplit::stream(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters,
+                                 const PairTaker& taker, FindCounts& counts) {
+    const View<const Aabb> on_host = boxes.on_host();
     const SlabTask task{row, on_host, filters, deal_, false, std::nullopt, nullptr, &taker};
     std::vector<std::size_t> which(workers_.size());
     std::iota(which.begin(), which.end(), 0);

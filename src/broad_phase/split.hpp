@@ -34,11 +34,13 @@ public:
     /// reach over the cuts that it does not pay; devices may have failed even so.
     bool find(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, PairList& pairs,
               FindCounts& counts);
-    /// The same pairs, not kept but handed over as they are found, from the devices of `crew`, or, if that is empty,
-    /// those that pays() speaks of; how many. A device that fails is the caller's affair: throws DeviceFault. All else
-    /// that is thrown, by `taker`, too, leaves.
-    std::uint64_t stream(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters,
-                         std::vector<std::size_t> crew, const PairTaker& taker, FindCounts& counts);
+    /// A call begins that streams from the devices of `crew`, or, if that is empty, those that pays() speaks of. Gives
+    /// back what other devices have; no device must be at work. Opens none.
+    void begin_stream(const AlgorithmRow& row, BoxInput& boxes, std::vector<std::size_t> crew);
+    /// Then: the same pairs as find(), not kept but handed over as they are found; how many. Touches no other device.
+    /// One that fails is the caller's affair: throws DeviceFault. All else that is thrown, by `taker`, too, leaves.
+    std::uint64_t stream(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters, const PairTaker& taker,
+                         FindCounts& counts);
     /// For tests: shares of the devices, the primary first, in place of those that were measured.
     void force(std::vector<double> fractions) { forced_ = std::move(fractions); }
     /// What each device did in the last call.

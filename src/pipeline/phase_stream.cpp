@@ -84,7 +84,7 @@ void PhaseStream::find_pairs(const Step& step, const PhaseRoles& roles, PhaseRun
     phases.take(phases.broad_place(), step.more_pairs);
     if (!roles.broad.empty()) {
         const auto take = [&](std::size_t device, View<const Pair> pairs) { phases.take(device, pairs); };
-        split_.stream(step.row, step.boxes, step.filters, roles.broad, {take, phases.piece()}, counts);
+        split_.stream(step.row, step.boxes, step.filters, {take, phases.piece()}, counts);
         return;
     }
     const PairList::Taker take = [&](View<const Pair> pairs) { phases.take(PhaseRun::host, pairs); };
@@ -99,8 +99,8 @@ void PhaseStream::find_pairs(const Step& step, const PhaseRoles& roles, PhaseRun
 
 PhaseStream::Done PhaseStream::run(const Step& step) {
     const PhaseRoles roles = roles_for(step.row, narrow_.begin(step.scene), step.boxes.count());
-    // From the primary device, which is busy once the phases begin.
-    if (!roles.broad.empty()) step.boxes.on_host();
+    // All that other devices have to do with it, before they are at work.
+    if (!roles.broad.empty()) split_.begin_stream(step.row, step.boxes, roles.broad);
     // After a step that failed nothing is expected.
     PhaseRun phases(narrow_, roles, chunk_pairs(std::exchange(last_pairs_, 0)), !forced.no_help, memory_);
     try {

@@ -243,6 +243,8 @@ void StepResult::Impl::find_streamed(const Scene& scene, const detail::Algorithm
                                        : detail::BoxInput(host_bounds->boxes(), broad.impl().staging);
     const detail::PhaseStream::Done done = phases->run({scene, row, boxes, filters(scene), with_planes});
     contacts = narrow->impl().result.contacts.view();
+    broad.impl().note_memory();
+    report.peak_host_bytes = broad.report().peak_host_bytes;
     take_contacts();
     report.algorithm = row.name;
     report.pairs = done.pairs;
