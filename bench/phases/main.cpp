@@ -103,10 +103,11 @@ Json to_json(const Play& play, const Played& played) {
             {"measured", frames_of(frames)}};
 }
 
-Json to_json(const Replay& run, std::size_t steps) {
+Json to_json(const Replay& run) {
+    const auto steps = static_cast<double>(run.balanced.seconds.size());
     return {{"units", run.units},
-            {"near_best", run.near_best},
-            {"share_near_best", static_cast<double>(run.near_best) / static_cast<double>(steps)},
+            {"share_near_best", static_cast<double>(run.near_best) / steps},
+            {"share_near_best_unsmoothed", static_cast<double>(run.near_best_unsmoothed) / steps},
             {"moves", run.balanced.moves},
             {"checks", run.balanced.checks},
             {"broad_units", run.balanced.broad_units},
@@ -122,7 +123,7 @@ Json balance_of(const Play& play, const std::vector<clinch::machines::PhaseLoad>
         narrow.push_back(1e3 * load.narrow);
     }
     Json runs = Json::array();
-    for (const Replay& run : replay(loads, seed)) runs.push_back(to_json(run, loads.size()));
+    for (const Replay& run : replay(loads, seed)) runs.push_back(to_json(run));
     return {{"kind", play.kind}, {"bodies", play.bodies}, {"steps", loads.size()},
             {"broad_ms", broad}, {"narrow_ms", narrow},   {"runs", runs}};
 }
