@@ -33,11 +33,12 @@ std::vector<PhaseLoad> falling_scene(std::size_t steps, double seconds) {
 }
 
 Balanced balance(const std::vector<PhaseLoad>& scene, const Stream& how, unsigned units, double noise,
-                 std::uint64_t seed) {
+                 std::uint64_t seed, Measured measured) {
     scenes::Random random(seed);
     detail::PhaseBalance balance(units);
     Balanced result;
     for (const PhaseLoad& load : scene) {
+        result.broad_units.push_back(balance.broad_units());
         PhaseStep step = stream(load, how, balance.broad_units(), units);
         result.seconds.push_back(step.seconds);
         double best = step.seconds;
@@ -45,12 +46,12 @@ Balanced balance(const std::vector<PhaseLoad>& scene, const Stream& how, unsigne
         result.best.push_back(best);
         step.busy.broad *= random.between(1.0 - noise, 1.0 + noise);
         step.busy.narrow *= random.between(1.0 - noise, 1.0 + noise);
-        if (balance.checks_now()) {
-            ++result.checks;
+        const bool checked = balance.checks_now();
+        if (checked) ++result.checks;
+        if (checked || measured == Measured::EveryStep)
             balance.measured(step.busy);
-        } else {
+        else
             balance.passed();
-        }
     }
     result.moves = balance.moves();
     return result;

@@ -35,11 +35,13 @@ std::vector<PhaseLoad> falling_scene(std::size_t steps, double seconds);
 
 struct Balanced {
     std::vector<double> seconds, best;  ///< of each step: as balanced, and with that step's best split
+    std::vector<unsigned> broad_units;  ///< of each step: the split that was chosen for it
     std::uint64_t moves = 0;
     std::size_t checks = 0;
 };
-/// All steps; measured times are off by `noise` at most, either way. Only the steps that are checked are measured.
+enum class Measured { OnlyChecked, EveryStep };
+/// All steps; measured times are off by `noise` at most, either way.
 Balanced balance(const std::vector<PhaseLoad>& scene, const Stream& how, unsigned units, double noise,
-                 std::uint64_t seed);
+                 std::uint64_t seed, Measured measured = Measured::OnlyChecked);
 
 }  // namespace clinch::machines

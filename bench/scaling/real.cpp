@@ -4,32 +4,18 @@
 #include <string>
 #include <utility>
 
+#include "bench/cpu_parts.hpp"
 #include "bench/scaling/curve.hpp"
 #include "bench/scenes/bodies.hpp"
 #include "bench/scenes/boxes.hpp"
 #include "clinch/broad_phase.hpp"
 #include "clinch/narrow_phase.hpp"
 #include "clinch/pipeline.hpp"
-#include "src/device/context_impl.hpp"
 
 namespace clinch::scaling {
 namespace {
 
 constexpr int settling = 5, measured = 7;
-
-// The first `devices` of the parts of the largest CPU.
-Context parts_of(const DeviceInfo& whole, std::size_t devices) {
-    ContextOptions options;
-    options.devices.indices = {whole.index};
-    options.devices.sub_devices = whole.compute_units;
-    Context context(options);
-    Context::Impl& impl = context.impl();
-    impl.infos.resize(devices);
-    impl.ids.resize(devices);
-    impl.id_owners.resize(devices);
-    impl.devices.resize(devices);
-    return context;
-}
 
 // The median of several runs, in seconds, after some that build kernels and settle the shares.
 template <class Run>
@@ -49,7 +35,7 @@ template <class At>
 Curve curve_of(const DeviceInfo& whole, const std::string& load, std::size_t bodies, std::size_t most, const At& at) {
     Curve curve{load, "one core each", static_cast<double>(bodies), {}};
     for (std::size_t devices = 1; devices <= std::min<std::size_t>(most, whole.compute_units); ++devices) {
-        Context context = parts_of(whole, devices);
+        Context context = bench::parts_of(whole, devices);
         Point point = at(context);
         point.devices = devices;
         point.ideal_seconds =
@@ -71,7 +57,7 @@ Curve broad(const DeviceInfo& whole, const std::string& kind, std::size_t n, std
 
 Curve narrow(const DeviceInfo& whole, std::size_t n, std::size_t most) {
     const Scene scene = scenes::make_bodies("mix", n, 1);
-    Context context = parts_of(whole, 1);
+    Context context = bench::parts_of(whole, 1);
     Pipeline pipeline(context);
     const View<const Pair> found = pipeline.step(scene).pairs();
     const std::vector<Pair> pairs(found.begin(), found.end());
@@ -91,13 +77,8 @@ Curve narrow(const DeviceInfo& whole, std::size_t n, std::size_t most) {
 }  // namespace
 
 std::optional<Machine> real(std::size_t most) {
-    const std::vector<DeviceInfo> all = list_devices();
-    const DeviceInfo* cpu = nullptr;
-    for (const DeviceInfo& info : all)
-        if (info.type == DeviceType::Cpu && info.platform == "Portable Computing Language" &&
-            (cpu == nullptr || info.compute_units > cpu->compute_units))
-            cpu = &info;
-    if (cpu == nullptr) return {};
+    const std::optional<DeviceInfo> cpu = bench::largest_cpu();
+    if (!cpu) return {};
     return Machine{
         "real",
         cpu->name + ", " + std::to_string(cpu->compute_units) + " compute units",

@@ -156,13 +156,20 @@ TEST_CASE("simulated: streaming overlaps the phases, and the buffer bounds it", 
 TEST_CASE("simulated: the phases' split follows a falling scene", "[host][schedule]") {
     const std::vector<machines::PhaseLoad> scene = machines::falling_scene(600, 0.2);
     for (const unsigned units : {2u, 4u, 8u, 16u, 64u})
-        for (const double noise : {0.0, 0.05}) {
-            INFO("seed " << seed << ", units " << units << ", noise " << noise);
-            const machines::Balanced found = machines::balance(scene, {}, units, noise, seed);
-            std::size_t good = 0;
-            for (std::size_t i = 0; i < scene.size(); ++i)
-                if (found.seconds[i] <= 1.1 * found.best[i]) ++good;
-            CHECK(10 * good >= 9 * scene.size());
-            CHECK(found.checks < scene.size());
-        }
+        for (const double noise : {0.0, 0.05})
+            for (const auto measured : {machines::Measured::OnlyChecked, machines::Measured::EveryStep}) {
+                INFO("seed " << seed << ", units " << units << ", noise " << noise << ", every step measured "
+                             << (measured == machines::Measured::EveryStep));
+                const machines::Balanced found = machines::balance(scene, {}, units, noise, seed, measured);
+                std::size_t good = 0;
+                std::uint64_t moves = 0;
+                for (std::size_t i = 0; i < scene.size(); ++i) {
+                    if (found.seconds[i] <= 1.1 * found.best[i]) ++good;
+                    CHECK(found.seconds[i] == machines::stream(scene[i], {}, found.broad_units[i], units).seconds);
+                    if (i > 0 && found.broad_units[i] != found.broad_units[i - 1]) ++moves;
+                }
+                CHECK(10 * good >= 9 * scene.size());
+                CHECK(found.checks < scene.size());
+                CHECK(found.moves - moves <= 1);  // the last one is for a step that does not come
+            }
 }
