@@ -73,7 +73,7 @@ PhaseRoles PhaseStream::roles_for(const AlgorithmRow& row, const std::vector<std
 
 // Chunks enough for all devices to be done at about the same time, but none so small that it is all beginning.
 std::size_t PhaseStream::chunk_pairs(std::uint64_t expected) const {
-    constexpr std::uint64_t unknown = 16384, least = 4096, chunks_a_device = 4;
+    constexpr std::uint64_t unknown = 16384, least = 4096, chunks_a_device = 2;
     if (forced.chunk_pairs > 0) return std::max<std::size_t>(forced.chunk_pairs, NarrowStream::few_pairs);
     if (expected == 0) return unknown;
     const std::uint64_t chunks = chunks_a_device * std::max<std::size_t>(1, context_.crew().size());
