@@ -174,6 +174,7 @@ std::optional<KeyLayout> BroadSplit::keys_for(std::uint64_t boxes) const {
         if (widest == nullptr || info.compute_units > widest->compute_units) widest = &info;
         most = std::max(most, worker->found());
     }
+    if (widest == nullptr) return std::nullopt;
     return PairSort::layout_for(most > 0 ? most : boxes * guessed_pairs_a_box, static_cast<std::uint32_t>(boxes),
                                 *widest);
 }
