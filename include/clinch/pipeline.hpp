@@ -23,8 +23,8 @@ struct PipelineOptions {
     /// them does not grow with their number: StepResult::pairs() is empty, and Report::stream tells what went by. Where
     /// there are several devices some find pairs, as many as measured times say is best, and the others contacts; who
     /// is done early helps. The contacts are, byte for byte, those of a step that does not stream; with Order::Any they
-    /// come in any order, those of a pair together, which saves a copy of them. A step whose scene
-    /// has changed finds all pairs anew. Needs `contacts`; with events or a warm start it is InvalidArgument.
+    /// come in any order, those of a pair together, which saves a copy of them. A step whose scene has changed finds
+    /// all pairs anew. Needs `contacts`; with events or a warm start it is InvalidArgument.
     bool streaming = false;
     /// Start the narrow phase of each step from what decided the pairs in the last one: see WarmStart.
     bool warm_start = false;
@@ -46,7 +46,7 @@ public:
     View<const Aabb> boxes() const;
     const Report& report() const noexcept;
     /// With PipelineOptions::contacts: the contacts of pairs(), in their order (with
-    /// PipelineOptions::streaming ascending, or any); see NarrowPhase::find. Empty without.
+    /// PipelineOptions::streaming ascending, or, with Order::Any, in any); see NarrowPhase::find. Empty without.
     View<const Contact> contacts() const noexcept;
     /// What the narrow phase did in this step; of a step in which nothing had changed the counts are those of the
     /// step that found the contacts, and the times are 0.

@@ -194,6 +194,20 @@ void BroadSplit::run(const SlabTask& task) {
     }
 }
 
+// All slabs, each on its device or not at all.
+void BroadSplit::run_in_place(const SlabTask& task) {
+    std::vector<std::size_t> which(workers_.size());
+    std::iota(which.begin(), which.end(), 0);
+    const std::vector<std::exception_ptr> thrown = run_once(task, which);
+    for (std::size_t s = 0; s < thrown.size(); ++s)
+        if (thrown[s] != nullptr && is_device_fault(thrown[s])) throw DeviceFault{workers_[s]->device(), thrown[s]};
+    for (const std::exception_ptr& error : thrown) {
+        if (error == nullptr) continue;
+        if (is_limit(error)) throw_limit(task);
+        std::rethrow_exception(error);
+    }
+}
+
 // Some of the slabs, each device those it has, one after the other. What each slab threw.
 std::vector<std::exception_ptr> BroadSplit::run_once(const SlabTask& task, const std::vector<std::size_t>& which) {
     std::map<std::size_t, std::vector<std::size_t>> of_device;  // places in `which`
@@ -254,7 +268,11 @@ void BroadSplit::throw_limit(const SlabTask& task) {
         worker->options().max_pairs = std::numeric_limits<std::uint64_t>::max();
     }
     if (task.strays != nullptr && !deal_.keep(task.boxes)) deal_.deal(task.boxes, Slabs(deal_.slabs()));
-    run({task.row, task.boxes, task.filters, task.deal, true, std::nullopt, nullptr});
+    const SlabTask counting{task.row, task.boxes, task.filters, task.deal, true, std::nullopt, nullptr};
+    if (task.taker != nullptr)
+        run_in_place(counting);
+    else
+        run(counting);
     std::uint64_t pairs = 0;
     for (const auto& worker : workers_) pairs += worker->counted();
     check_limit(pairs, options_);
@@ -288,16 +306,7 @@ std::uint64_t BroadSplit::stream(const AlgorithmRow& row, BoxInput& boxes, const
                                  const PairTaker& taker, FindCounts& counts) {
     const View<const Aabb> on_host = boxes.on_host();
     const SlabTask task{row, on_host, filters, deal_, false, std::nullopt, nullptr, &taker};
-    std::vector<std::size_t> which(workers_.size());
-    std::iota(which.begin(), which.end(), 0);
-    const std::vector<std::exception_ptr> thrown = run_once(task, which);
-    for (std::size_t s = 0; s < thrown.size(); ++s)
-        if (thrown[s] != nullptr && is_device_fault(thrown[s])) throw DeviceFault{workers_[s]->device(), thrown[s]};
-    for (const std::exception_ptr& error : thrown) {
-        if (error == nullptr) continue;
-        if (is_limit(error)) throw_limit(task);
-        std::rethrow_exception(error);
-    }
+    run_in_place(task);
     measure();
     add_counts(counts);
     std::uint64_t pairs = 0;

@@ -62,6 +62,7 @@ private:
     void prepare(const std::vector<std::size_t>& crew);
     std::optional<KeyLayout> keys_for(std::uint64_t boxes) const;
     void run(const SlabTask& task);
+    void run_in_place(const SlabTask& task);
     std::vector<std::exception_ptr> run_once(const SlabTask& task, const std::vector<std::size_t>& which);
     std::vector<std::size_t> reassign(const AlgorithmRow& row, const std::vector<std::size_t>& which,
                                       const std::vector<std::exception_ptr>& thrown);

@@ -113,7 +113,8 @@ PhaseStream::Done PhaseStream::run(const Step& step) {
     }
     last_pairs_ = phases.pairs();
     learn(phases, roles);
-    return Done{phases.counts(), phases.pairs(), phases.broad_ms(), phases.narrow_ms(), phases.work()};
+    return Done{phases.counts(),    phases.pairs(), phases.broad_ms(),
+                phases.narrow_ms(), phases.work(),  roles.broad.size() > 1 ? split_.work() : std::vector<DeviceWork>()};
 }
 
 // What each phase would have taken on its devices alone.

@@ -40,6 +40,7 @@ public:
         std::uint64_t pairs = 0;
         double broad_ms = 0.0, narrow_ms = 0.0;  ///< until each was done; both begin with the step
         StreamWork work;
+        std::vector<DeviceWork> broad_split;  ///< as Report::broad_split
     };
     /// Finds the contacts of all pairs; the result is NarrowPhase's. Throws DeviceFault for a device that failed, else
     /// Error; then nothing is left of the step.

@@ -243,6 +243,8 @@ void StepResult::Impl::find_streamed(const Scene& scene, const detail::Algorithm
                                        : detail::BoxInput(host_bounds->boxes(), broad.impl().staging);
     const detail::PhaseStream::Done done = phases->run({scene, row, boxes, filters(scene), with_planes});
     contacts = narrow->impl().result.contacts.view();
+    broad.impl().report.bodies = rows;  // for the choice of the next step
+    broad.impl().report.pairs = done.pairs - with_planes.size();
     broad.impl().note_memory();
     report.peak_host_bytes = broad.report().peak_host_bytes;
     take_contacts();
@@ -254,6 +256,7 @@ void StepResult::Impl::find_streamed(const Scene& scene, const detail::Algorithm
     report.skipped.pairs_filtered += done.counts.pairs_filtered;
     report.skipped.static_pairs += done.counts.static_pairs;
     report.stream = done.work;
+    report.broad_split = done.broad_split;
     report.ms.broad += done.broad_ms;
     report.ms.narrow = narrow_report.ms.total = done.narrow_ms;
     report.peak_host_bytes += done.work.pair_bytes;

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <functional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "clinch/pipeline.hpp"
@@ -152,6 +153,36 @@ TEST_CASE("manifolds, tolerances and precisions stream, too", "[device]") {
             move_some(scene, random);
         }
     }
+}
+
+TEST_CASE("in any order a streamed step has the same contacts, those of a pair together", "[device]") {
+    constexpr std::uint64_t seed = 99;
+    INFO("seed " << seed);
+    test::Random random(seed);
+    Context together = test::several(3u);
+    together.impl().least_boxes_a_device = 1;
+    Context alone = first_of(together);
+    const PipelineOptions sorted = options_for("bvh", 4);
+    PipelineOptions any = streaming(sorted);
+    any.broad_phase.order = Order::Any;
+    Pipeline on_all(together, any), on_one(alone, sorted);
+    on_all.impl().phases->forced = {false, 2, 256};
+    const Scene scene = heap(900, 10.0, random);
+    const StepResult& streamed = on_all.step(scene);
+    std::vector<Contact> rows(streamed.contacts().begin(), streamed.contacts().end());
+    REQUIRE(rows.size() > 500);
+    CHECK(streamed.report().broad_split.size() == 2);
+    const auto before = [](const Contact& p, const Contact& q) { return std::tie(p.a, p.b) < std::tie(q.a, q.b); };
+    const auto pairs_in_a_row = [&] {
+        std::size_t pairs = 1;
+        for (std::size_t i = 1; i < rows.size(); ++i)
+            pairs += before(rows[i - 1], rows[i]) || before(rows[i], rows[i - 1]) ? 1U : 0U;
+        return pairs;
+    };
+    const std::size_t pairs = pairs_in_a_row();
+    std::stable_sort(rows.begin(), rows.end(), before);  // those of a pair stay as they are
+    CHECK(pairs == pairs_in_a_row());
+    CHECK((test::bytes(View<const Contact>(rows)) == test::bytes(on_one.step(scene).contacts())));
 }
 
 TEST_CASE("steps stream on the host alone", "[host]") {
