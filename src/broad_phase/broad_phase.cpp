@@ -139,7 +139,7 @@ void BroadPhase::Impl::listed(std::uint64_t count) {
 // The pairs from all devices that they are worth; false if one device is to find them.
 bool BroadPhase::Impl::find_split(const detail::AlgorithmRow& row, detail::BoxInput& boxes,
                                   const detail::FilterInput& filters, detail::FindCounts& counts) {
-    if (context.infos.size() < 2) return false;
+    if (alone || context.infos.size() < 2) return false;
     if (context.crew().size() < 2) {
         split.reset();
         return false;

@@ -31,6 +31,7 @@ struct BroadPhase::Impl {
     Report report;
     std::uint64_t most_host_bytes = 0;
     std::uint64_t steps_refused = 0;  // number of boxes for which keeping pairs did not pay
+    bool alone = false;               // several devices never share a call
     bool any_invalid = false;         // among the boxes of the last call
     std::uint64_t listed_boxes = 0;   // boxes of the last call, if `pairs` is its list; else 0
 

@@ -12,6 +12,7 @@
 
 #include "src/broad_phase/algorithm.hpp"
 #include "src/primitives/host_parallel.hpp"
+#include "src/primitives/host_radix_sort.hpp"
 
 // Compiled for several processors; the program's start chooses. Not beneath a sanitizer, which is not up by then.
 #if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && \
@@ -59,24 +60,14 @@ struct Entry {
     std::uint32_t id;
 };
 
-// Stable; radix sort from the lowest digit on [Knuth, The Art of Computer Programming 3, 5.2.5]. Uses `spare`.
+// Stable. Uses `spare`.
 void sort_entries(std::vector<Entry>& entries, std::vector<Entry>& spare) {
     if (entries.size() <= few_boxes) {
         std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
         return;
     }
     spare.resize(entries.size());
-    std::array<std::array<std::size_t, 256>, 4> place{};
-    for (const Entry& entry : entries)
-        for (std::size_t digit = 0; digit < 4; ++digit) ++place[digit][entry.key >> (8 * digit) & 255];
-    for (std::size_t digit = 0; digit < 4; ++digit) {
-        auto& places = place[digit];
-        if (places[entries[0].key >> (8 * digit) & 255] == entries.size()) continue;  // all alike
-        std::size_t at = 0;
-        for (std::size_t& count : places) at += std::exchange(count, at);
-        for (const Entry& entry : entries) spare[places[entry.key >> (8 * digit) & 255]++] = entry;
-        entries.swap(spare);
-    }
+    host_radix_sort(entries.data(), spare.data(), entries.size(), 32, [](const Entry& entry) { return entry.key; });
 }
 
 // The axis on which the centres vary most; of two alike the first.

@@ -86,7 +86,8 @@ void SlabWorker::search(const SlabTask& task, const std::vector<std::uint32_t>& 
     if (task.strays != nullptr && *task.strays) return;
     if (&members == &task.deal.members(slab_) && !task.filters.any() && task.taker == nullptr)
         name(device, task, input);
-    algorithm->find(input, filters_of(task.filters, members), pairs_, counts_);
+    const bool all = task.deal.count() == 1 && members.size() == task.boxes.size();
+    algorithm->find(input, all ? task.filters : filters_of(task.filters, members), pairs_, counts_);
     // One box alone is none that an algorithm looks at: the host does.
     counts_.invalid_boxes = counts_.invalid_boxes || members.size() == 1;
 }

@@ -1,6 +1,7 @@
 #include "src/narrow_phase/chunk_contacts.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <utility>
 
@@ -11,6 +12,13 @@ namespace clinch::detail {
 namespace {
 
 constexpr std::uint32_t rows_worth_threads = 4096;
+
+// Writes the unused bytes behind it, too: contacts are the same to the byte, wherever they were found.
+void set_feature(Contact& c, std::uint32_t feature) {
+    unsigned char bytes[offsetof(Contact, on_a) - offsetof(Contact, feature)] = {};
+    std::memcpy(bytes, &feature, sizeof feature);
+    std::memcpy(reinterpret_cast<unsigned char*>(&c) + offsetof(Contact, feature), bytes, sizeof bytes);
+}
 
 // Answers in columns, each `stride` floats long, those of float64 with what the floats leave over.
 class Columns {
@@ -25,7 +33,7 @@ public:
         const double x = origin.x + number(5, 4, i, rests), y = origin.y + number(6, 5, i, rests),
                      z = origin.z + number(7, 6, i, rests);
         // One number after the other: a struct that is copied would wait for each of its halves.
-        c.feature = 0;
+        set_feature(c, 0);
         c.on_a.x = x;
         c.on_a.y = y;
         c.on_a.z = z;
@@ -76,6 +84,7 @@ Contact contact_of(const HostAnswer& answer) {
     Contact c;
     c.a = answer.a;
     c.b = answer.b;
+    set_feature(c, 0);
     c.distance = answer.distance;
     c.error = answer.error;
     c.normal = {answer.normal[0], answer.normal[1], answer.normal[2]};
@@ -130,7 +139,7 @@ void put_points(const Contact& whole, const FewPoints& few, const Vec3& position
         c.a = whole.a;
         c.b = whole.b;
         // Numbers of vertices beyond what a name has room for come round again.
-        c.feature = j > 0 && point.feature <= to[j - 1].feature ? to[j - 1].feature + 1 : point.feature;
+        set_feature(c, j > 0 && point.feature <= to[j - 1].feature ? to[j - 1].feature + 1 : point.feature);
         c.on_a.x = witness ? whole.on_a.x : point.on_a[0];
         c.on_a.y = witness ? whole.on_a.y : point.on_a[1];
         c.on_a.z = witness ? whole.on_a.z : point.on_a[2];
@@ -161,7 +170,7 @@ void write_each(const Scene& scene, std::size_t count, const ContactAt& contact_
     parallel_rows(count, rows_worth_threads, [&](std::size_t i) {
         Contact c = contact_at(i);
         place(position[c.a], c);
-        to[i] = c;
+        std::memcpy(static_cast<void*>(to + i), &c, sizeof c);
     });
 }
 

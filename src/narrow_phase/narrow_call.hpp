@@ -19,7 +19,7 @@ inline Level level_of(const NarrowPhaseOptions& options) {
     return options.precision < 0.25 ? Level::Fast : options.precision < 0.75 ? Level::Certain : Level::Exact;
 }
 
-/// What holds for all calls of a narrow phase. Nothing but the plans changes while devices work.
+/// What holds for all calls of a narrow phase. Nothing but the plans and bodies changes while devices work.
 struct NarrowSettings {
     explicit NarrowSettings(const NarrowPhaseOptions& o)
         : options(o), level(level_of(o)), shapes(o.contacts_per_pair > 1), plans(options, shapes) {}
@@ -27,6 +27,7 @@ struct NarrowSettings {
     NarrowPhaseOptions options;
     Level level;
     NarrowShapes shapes;  ///< those of the scene of the call
+    HostBodies bodies;    ///< devices bring them up to date
     Plans plans;
 };
 

@@ -140,6 +140,11 @@ std::vector<std::size_t> NarrowDevices::begin_stream() {
     return alike();
 }
 
+void NarrowDevices::prepare_stream(std::size_t device, const NarrowCall& call) {
+    NarrowWorker& worker = member(device).worker();
+    worker.timed([&] { worker.begin(call); });
+}
+
 std::pair<std::size_t, std::size_t> NarrowDevices::find_streamed(std::size_t device, const NarrowCall& call,
                                                                  std::atomic<std::size_t>& next, NarrowResult& result) {
     NarrowMember& one = member(device);

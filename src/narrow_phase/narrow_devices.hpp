@@ -32,6 +32,9 @@ public:
     bool find(const NarrowCall& call, NarrowResult& result, NarrowReport& report);
     /// A call begins whose pairs come while it runs: the devices that may work on it, the primary one first.
     std::vector<std::size_t> begin_stream();
+    /// Sends `device`, one of those, what chunks of such a call need, so that the first need not wait for it. As
+    /// find_streamed().
+    void prepare_stream(std::size_t device, const NarrowCall& call);
     /// Writes what `device`, one of those, finds of the pairs of such a call: NarrowMember::put_chunk(). Opens it. In
     /// the thread of the device; devices may be at it at once. Throws what went wrong.
     std::pair<std::size_t, std::size_t> find_streamed(std::size_t device, const NarrowCall& call,

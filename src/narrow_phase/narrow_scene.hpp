@@ -2,79 +2,21 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "clinch/scene.hpp"
 #include "src/device/device.hpp"
+#include "src/narrow_phase/host_bodies.hpp"
+#include "src/narrow_phase/narrow_shapes.hpp"
 #include "src/scene/bounds.hpp"
 
 namespace clinch::detail {
 
-// As the structs of cl/narrow_phase/body.clh.
-struct BodyFrame32 {
-    float high[3], low[3], turn[9];
-    std::uint32_t shape;
-};
-struct BodyFrame64 {
-    double position[3], turn[9];
-    std::uint32_t shape, unused;
-};
-template <class T>
-struct NarrowShapeOf {
-    T size[3], normal[3];
-    std::uint32_t kind, first_vertex, vertex_count, stride, first_face, face_count;
-};
-// As the struct of cl/narrow_phase/patch.clh.
-template <class T>
-struct NarrowFaceOf {
-    T normal[3], thickness;
-    std::uint32_t first_corner, corners;
-};
-using NarrowShape32 = NarrowShapeOf<float>;
-using NarrowShape64 = NarrowShapeOf<double>;
-static_assert(sizeof(BodyFrame32) == 64 && sizeof(BodyFrame64) == 104, "kernels read this layout");
-using NarrowFace64 = NarrowFaceOf<double>;
-static_assert(sizeof(NarrowShape32) == 48 && sizeof(NarrowShape64) == 72, "kernels read this layout");
-static_assert(sizeof(NarrowFaceOf<float>) == 24 && sizeof(NarrowFace64) == 40, "kernels read this layout");
-
-/// A body that takes no part: class of a row that is not there or is rejected.
-constexpr std::uint8_t no_class = 255;
-
-/// The shapes of a scene: one record each, and the vertices of hulls as columns x, y, z, each `stride` (a multiple of
-/// 16) long from first_vertex on, with the last vertex repeated; with faces, those of hulls, too. In float64, and
-/// rounded once to float32.
-class NarrowShapes {
-public:
-    /// Without faces, hulls have none.
-    explicit NarrowShapes(bool with_faces) : with_faces_(with_faces) {}
-    /// Brings the records up to date; true if anything changed. Cost: the changed hulls.
-    bool update(const Scene& scene);
-    const std::vector<NarrowShape64>& records() const noexcept { return records_; }
-    const std::vector<double>& vertices() const noexcept { return vertices_; }
-    const std::vector<NarrowFace64>& faces() const noexcept { return faces_; }
-    /// Of faces: numbers of the hull's vertices.
-    const std::vector<std::uint32_t>& corners() const noexcept { return corners_; }
-
-private:
-    void add(const Shape& shape);
-    void add_faces(NarrowShape64& record, const std::vector<Vec3>& points);
-    bool with_faces_;
-    std::shared_ptr<const int> identity_;
-    std::uint64_t version_ = 0;
-    std::vector<NarrowShape64> records_;
-    std::vector<double> vertices_;
-    std::vector<NarrowFace64> faces_;
-    std::vector<std::uint32_t> corners_;
-};
-
-/// The frame of a row that is in use, in float64: what all others are rounded from.
-BodyFrame64 frame_of(const Scene& scene, std::uint32_t row);
-
 /// All of it on a device: what a call asks for and what changed since is sent.
 class NarrowScene {
 public:
-    explicit NarrowScene(Device& device) : device_(device) {}
+    /// Both must outlive this object.
+    NarrowScene(Device& device, HostBodies& bodies) : device_(device), host_(bodies) {}
 
     /// Brings the float32 (`bits` 32) or float64 (64) frames and shapes on the device up to date with the scene.
     void update(const Scene& scene, const NarrowShapes& shapes, unsigned bits);
@@ -108,20 +50,20 @@ private:
     };
     const Shapes& shapes_of(unsigned bits) const noexcept { return bits == 64 ? shapes64_ : shapes32_; }
     template <class Frame>
-    void send_frames(const Scene& scene, Frames<Frame>& frames);
+    void send_frames(const Scene& scene, View<const Frame> all, Frames<Frame>& frames);
     template <class T>
     void send_shapes(const NarrowShapes& shapes, Shapes& to);
     template <class T>
     void send_faces(const NarrowShapes& shapes, Shapes& to);
 
     Device& device_;
+    HostBodies& host_;
     Kernel place_kernel_;
     Frames<BodyFrame32> frames32_;
     Frames<BodyFrame64> frames64_;
     Shapes shapes32_, shapes64_;
     Buffer rows_, records_, classes_, margins_;
-    RowTracker class_tracker_;
-    std::vector<std::uint8_t> host_classes_;
+    std::uint64_t classes_version_ = 0;  // that were sent; 0: none
     bool has_margins_ = false;
 };
 

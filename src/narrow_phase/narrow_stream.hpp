@@ -28,6 +28,8 @@ public:
     std::vector<std::size_t> begin(const Scene& scene);
     /// Fewer pairs than this, if there are no more in the call, are the host's.
     static constexpr std::size_t few_pairs = NarrowPhase::Impl::few_pairs;
+    /// Sends that device what it needs of the scene, before the first find(). As that.
+    void prepare(std::size_t device) { narrow_.devices.prepare_stream(device, {*scene_, {}, false, nullptr}); }
     /// Finds what the pairs have. In the thread of that device; several devices at once. Throws what went wrong.
     void find(std::size_t device, View<const Pair> pairs);
     /// The same on the host; in one thread, while no device is at work.

@@ -31,7 +31,8 @@ struct NarrowShare {
 class NarrowWorker {
 public:
     /// Both must outlive this object. Sends and builds nothing yet.
-    NarrowWorker(Device& device, NarrowSettings& settings) : device_(device), settings_(settings), scene_(device) {}
+    NarrowWorker(Device& device, NarrowSettings& settings)
+        : device_(device), settings_(settings), scene_(device, settings.bodies) {}
     NarrowWorker(const NarrowWorker&) = delete;
     NarrowWorker& operator=(const NarrowWorker&) = delete;
 

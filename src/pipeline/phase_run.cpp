@@ -65,20 +65,28 @@ void PhaseRun::deliver(std::size_t device, Chunk& chunk) {
     if (buffer_.cancelled()) throw Stopped{};
 }
 
-void PhaseRun::do_chunk(std::size_t device, Chunk chunk) {
+// The narrow phase at work on a device, which may fail.
+template <class Work>
+void PhaseRun::work_on(std::size_t device, const Work& work) {
     const Stopwatch watch;
-    const View<const Pair> pairs{chunk.data(), chunk.size()};
-    if (device == host) {
-        narrow_.find_on_host(pairs);
-    } else {
-        try {
-            narrow_.find(device, pairs);
-        } catch (...) {
-            if (is_device_fault(std::current_exception())) throw DeviceFault{device, std::current_exception()};
-            throw;
-        }
+    try {
+        work();
+    } catch (...) {
+        if (device != host && is_device_fault(std::current_exception()))
+            throw DeviceFault{device, std::current_exception()};
+        throw;
     }
     hands_.at(device).narrow_ms += watch.ms();
+}
+
+void PhaseRun::do_chunk(std::size_t device, Chunk chunk) {
+    const View<const Pair> pairs{chunk.data(), chunk.size()};
+    work_on(device, [&] {
+        if (device == host)
+            narrow_.find_on_host(pairs);
+        else
+            narrow_.find(device, pairs);
+    });
     const std::lock_guard<std::mutex> lock(memory_.mutex);
     memory_.spare.push_back(std::move(chunk));
 }
@@ -123,17 +131,20 @@ void PhaseRun::find_all(const FindPairs& find_pairs) {
         if (error != nullptr) std::rethrow_exception(error);
 }
 
-std::vector<std::exception_ptr> PhaseRun::run(const FindPairs& find_pairs) {
+std::vector<std::exception_ptr> PhaseRun::run(const FindPairs& find_pairs, bool expected) {
     const Stopwatch watch;
     std::vector<std::size_t> consumers = roles_.narrow;
     if (roles_.alike.empty()) consumers.push_back(host);
     std::vector<std::exception_ptr> thrown = run_crew(
         1 + consumers.size(),
         [&](std::size_t k) {
-            if (k == 0)
+            if (k == 0) {
                 find_all(find_pairs);
-            else
-                do_all(consumers[k - 1]);
+                return;
+            }
+            const std::size_t device = consumers[k - 1];
+            if (expected && device != host) work_on(device, [&] { narrow_.prepare(device); });
+            do_all(device);
         },
         [&](std::size_t) { buffer_.cancel(); });
     for (const auto& [device, hands] : hands_) pairs_ += hands.pairs;

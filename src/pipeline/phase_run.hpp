@@ -46,10 +46,11 @@ public:
     /// too; they do anyway where nobody else would.
     PhaseRun(NarrowStream& narrow, const PhaseRoles& roles, std::size_t chunk_pairs, bool help, Memory& memory);
 
-    /// Calls `find_pairs`, which calls take(), while chunks are done; all are done when it returns. What each thread
-    /// threw: DeviceFault what a device did; Stopped who was in the middle of something when another one threw.
+    /// Calls `find_pairs`, which calls take(), while chunks are done; all are done when it returns. With `expected`,
+    /// devices of the narrow phase get ready before there is a chunk. What each thread threw: DeviceFault what a device
+    /// did; Stopped who was in the middle of something when another one threw.
     using FindPairs = std::function<void(FindCounts&)>;
-    std::vector<std::exception_ptr> run(const FindPairs& find_pairs);
+    std::vector<std::exception_ptr> run(const FindPairs& find_pairs, bool expected);
     /// Pairs that were found, in the thread of that device, or `host`.
     void take(std::size_t device, View<const Pair> pairs);
     /// Pairs that should be found at a time, at most.
@@ -77,6 +78,8 @@ private:
     void deliver(std::size_t device, Chunk& chunk);
     void find_all(const FindPairs& find_pairs);
     void flush();
+    template <class Work>
+    void work_on(std::size_t device, const Work& work);
     void do_chunk(std::size_t device, Chunk chunk);
     void do_all(std::size_t device);
     Chunk fresh();

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "src/device/crew.hpp"
+#include "src/device/stopwatch.hpp"
 #include "src/pipeline/phase_run.hpp"
 
 namespace clinch::detail {
@@ -34,12 +35,14 @@ void rethrow_cause(const std::vector<std::exception_ptr>& thrown) {
 
 }  // namespace
 
-PhaseStream::PhaseStream(Context::Impl& context, BroadPhase::Impl& broad, NarrowPhase::Impl& narrow)
-    : context_(context),
-      broad_(broad),
-      options_(unordered(broad.options)),
-      narrow_(narrow, broad.options.order == Order::Sorted),
-      split_(context, options_) {}
+PhaseStream::PhaseStream(Context& context, const BroadPhaseOptions& options, NarrowPhase::Impl& narrow)
+    : context_(context.impl()),
+      options_(unordered(options)),
+      broad_(context, options_),
+      narrow_(narrow, options.order == Order::Sorted),
+      split_(context_, options_) {
+    broad_.impl().alone = true;
+}
 
 // `alike`: devices that may work on the narrow phase, the primary one first.
 PhaseRoles PhaseStream::roles_for(const AlgorithmRow& row, const std::vector<std::size_t>& alike,
@@ -52,7 +55,7 @@ PhaseRoles PhaseStream::roles_for(const AlgorithmRow& row, const std::vector<std
     for (const std::size_t device : crew)
         if (!has(alike, device)) able.push_back(device);
     const std::size_t unlike = able.size();
-    able.insert(able.end(), alike.rbegin(), alike.rend());
+    able.insert(able.end(), alike.begin(), alike.end());  // the boxes are on the first
     const auto units = static_cast<unsigned>(crew.size());
     std::size_t wanted = 1;
     if (units > 1) {
@@ -80,16 +83,32 @@ std::size_t PhaseStream::chunk_pairs(std::uint64_t expected) const {
     return static_cast<std::size_t>(std::clamp<std::uint64_t>(expected / chunks, least, Slots::chunk_pairs));
 }
 
-void PhaseStream::find_pairs(const Step& step, const PhaseRoles& roles, PhaseRun& phases, FindCounts& counts) {
-    phases.take(phases.broad_place(), step.more_pairs);
-    if (!roles.broad.empty()) {
-        const auto take = [&](std::size_t device, View<const Pair> pairs) { phases.take(device, pairs); };
-        split_.stream(step.row, step.boxes, step.filters, {take, phases.piece()}, counts);
-        return;
-    }
-    const PairList::Taker take = [&](View<const Pair> pairs) { phases.take(PhaseRun::host, pairs); };
-    broad_.stream(step.row, step.boxes, step.filters, take, phases.piece(), false);
-    const Report& found = broad_.report;
+// Whether boxes are searched where they are made: on the primary device, or the host.
+bool PhaseStream::in_place(const PhaseRoles& roles) const {
+    return roles.broad.empty() || (roles.broad.size() == 1 && roles.broad.front() == context_.primary());
+}
+
+void PhaseStream::find_pairs(const Step& step, Prepared& ready, const PhaseRoles& roles, PhaseRun& phases,
+                             FindCounts& counts) {
+    phases.take(phases.broad_place(), ready.more_pairs);
+    if (in_place(roles)) return find_in_place(step, ready, phases, counts);
+    const auto take = [&](std::size_t device, View<const Pair> pairs) { phases.take(device, pairs); };
+    split_.stream(step.row, ready.boxes, ready.filters, {take, phases.piece()}, counts);
+}
+
+void PhaseStream::find_in_place(const Step& step, Prepared& ready, PhaseRun& phases, FindCounts& counts) {
+    const Stopwatch watch;
+    double taken_ms = 0.0;
+    const PairList::Taker take = [&](View<const Pair> pairs) {
+        const Stopwatch away;
+        phases.take(phases.broad_place(), pairs);
+        taken_ms += away.ms();
+    };
+    BroadPhase::Impl& broad = broad_.impl();
+    broad.settle();
+    broad.stream(step.row, ready.boxes, ready.filters, take, phases.piece(), false);
+    in_place_ms_ = watch.ms() - taken_ms;
+    const Report& found = broad.report;
     counts.box_tests = found.box_tests;
     counts.still = found.skipped.still;
     counts.boxes_inside = found.skipped.inside;
@@ -98,13 +117,24 @@ void PhaseStream::find_pairs(const Step& step, const PhaseRoles& roles, PhaseRun
 }
 
 PhaseStream::Done PhaseStream::run(const Step& step) {
-    const PhaseRoles roles = roles_for(step.row, narrow_.begin(step.scene), step.boxes.count());
-    // All that other devices have to do with it, before they are at work.
-    if (!roles.broad.empty()) split_.begin_stream(step.row, step.boxes, roles.broad);
+    const PhaseRoles roles = roles_for(step.row, narrow_.begin(step.scene), step.scene.row_count());
+    std::optional<Prepared> ready;
+    if (!in_place(roles)) {  // all that other devices have to do with it, before they are at work
+        ready.emplace(step.prepare());
+        split_.begin_stream(step.row, ready->boxes, roles.broad);
+    }
     // After a step that failed nothing is expected.
-    PhaseRun phases(narrow_, roles, chunk_pairs(std::exchange(last_pairs_, 0)), !forced.no_help, memory_);
+    const std::uint64_t expected = std::exchange(last_pairs_, 0);
+    PhaseRun phases(narrow_, roles, chunk_pairs(expected), !forced.no_help, memory_);
+    double prepared_ms = 0.0;
+    const auto find = [&](FindCounts& counts) {
+        const Stopwatch watch;
+        if (!ready) ready.emplace(step.prepare());
+        prepared_ms = watch.ms();
+        find_pairs(step, *ready, roles, phases, counts);
+    };
     try {
-        rethrow_cause(phases.run([&](FindCounts& counts) { find_pairs(step, roles, phases, counts); }));
+        rethrow_cause(phases.run(find, expected >= NarrowStream::few_pairs));
         check_limit(phases.pairs(), options_);
         narrow_.finish();
     } catch (...) {
@@ -113,16 +143,22 @@ PhaseStream::Done PhaseStream::run(const Step& step) {
     }
     last_pairs_ = phases.pairs();
     learn(phases, roles);
-    return Done{phases.counts(),    phases.pairs(), phases.broad_ms(),
-                phases.narrow_ms(), phases.work(),  roles.broad.size() > 1 ? split_.work() : std::vector<DeviceWork>()};
+    return Done{phases.counts(),
+                phases.pairs(),
+                ready->more_pairs.size(),
+                phases.broad_ms() - prepared_ms,
+                phases.narrow_ms(),
+                phases.work(),
+                roles.broad.size() > 1 ? split_.work() : std::vector<DeviceWork>()};
 }
 
 // What each phase would have taken on its devices alone.
 void PhaseStream::learn(const PhaseRun& phases, const PhaseRoles& roles) {
     if (!balance_ || roles.broad.empty() || balanced_ < 2) return;
     if (forced.broad_devices > 0 || roles.broad.size() != balance_->broad_units()) return balance_->passed();
-    double broad_ms = 0.0;
-    for (const DeviceWork& work : split_.work()) broad_ms += work.ms;
+    double broad_ms = in_place(roles) ? in_place_ms_ : 0.0;
+    if (!in_place(roles))
+        for (const DeviceWork& work : split_.work()) broad_ms += work.ms;
     balance_->measured(
         {broad_ms / 1e3 / balance_->broad_units(), phases.narrow_work_ms() / 1e3 / balance_->narrow_units()});
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -23,22 +24,29 @@ namespace clinch::detail {
 /// the primary device.
 class PhaseStream {
 public:
-    /// All must outlive this object.
-    PhaseStream(Context::Impl& context, BroadPhase::Impl& broad, NarrowPhase::Impl& narrow);
+    /// `context` and `narrow` must outlive this object.
+    PhaseStream(Context& context, const BroadPhaseOptions& options, NarrowPhase::Impl& narrow);
 
+    /// What the broad phase begins with.
+    struct Prepared {
+        BoxInput boxes;
+        FilterInput filters;
+        const std::vector<Pair>& more_pairs;  ///< any order: they go first
+    };
     /// What a step is about.
     struct Step {
         const Scene& scene;
         const AlgorithmRow& row;
-        BoxInput& boxes;
-        const FilterInput& filters;
-        const std::vector<Pair>& more_pairs;  ///< found before, any order: they go first
+        /// Called once, in the caller's thread, while other devices than the primary one may be at work; with a row of
+        /// the host it may touch none.
+        std::function<Prepared()> prepare;
     };
     /// What a step did.
     struct Done {
         FindCounts counts;
-        std::uint64_t pairs = 0;
-        double broad_ms = 0.0, narrow_ms = 0.0;  ///< until each was done; both begin with the step
+        std::uint64_t pairs = 0, more_pairs = 0;  ///< all, and of those, Prepared::more_pairs
+        double broad_ms = 0.0;                    ///< from Step::prepare() to the last pair
+        double narrow_ms = 0.0;                   ///< until all were done, from before that
         StreamWork work;
         std::vector<DeviceWork> broad_split;  ///< as Report::broad_split
     };
@@ -57,14 +65,17 @@ public:
 private:
     PhaseRoles roles_for(const AlgorithmRow& row, const std::vector<std::size_t>& alike, std::uint64_t bodies);
     std::size_t chunk_pairs(std::uint64_t expected) const;
-    void find_pairs(const Step& step, const PhaseRoles& roles, PhaseRun& phases, FindCounts& counts);
+    bool in_place(const PhaseRoles& roles) const;
+    void find_pairs(const Step& step, Prepared& ready, const PhaseRoles& roles, PhaseRun& phases, FindCounts& counts);
+    void find_in_place(const Step& step, Prepared& ready, PhaseRun& phases, FindCounts& counts);
     void learn(const PhaseRun& phases, const PhaseRoles& roles);
 
     Context::Impl& context_;
-    BroadPhase::Impl& broad_;
     BroadPhaseOptions options_;
+    BroadPhase broad_;  // of the primary device, or the host
     NarrowStream narrow_;
-    BroadSplit split_;
+    BroadSplit split_;          // of several, or another one
+    double in_place_ms_ = 0.0;  // of the last search on the primary device
     std::optional<PhaseBalance> balance_;
     unsigned balanced_ = 0;  // units that it has
     std::uint64_t last_pairs_ = 0;

@@ -43,7 +43,7 @@ StepResult::Impl::Impl(Context& context, const PipelineOptions& options)
     detail::check_options(context.impl(), options.broad_phase);
     check_streaming(options);
     if (options.contacts) narrow.emplace(context, options.narrow_phase);
-    if (options.streaming) phases = std::make_unique<detail::PhaseStream>(context.impl(), broad.impl(), narrow->impl());
+    if (options.streaming) phases = std::make_unique<detail::PhaseStream>(context, options.broad_phase, narrow->impl());
 }
 
 void StepResult::Impl::start_afresh() {
@@ -102,6 +102,11 @@ std::size_t StepResult::Impl::make_boxes_on_host(const Scene& scene) {
     const std::size_t changed = host_bounds->update(scene);
     report.ms.bounds = bounds.ms();
     return changed;
+}
+
+void StepResult::Impl::make_boxes(const Scene& scene) {
+    const std::size_t changed = on_device ? make_boxes_on_device(scene) : make_boxes_on_host(scene);
+    report.skipped.bounds = rows - std::min(rows, changed);
 }
 
 // The pairs of the boxes on the device, by what the last upload changed if that pays.
@@ -194,13 +199,13 @@ void StepResult::Impl::step(const Scene& scene) {
     report.rejected = scene.rejected();
     const detail::AlgorithmRow& row = broad.impl().choose(rows);
     on_device = row.needs_device;
-    const std::size_t changed = on_device ? make_boxes_on_device(scene) : make_boxes_on_host(scene);
-    report.skipped.bounds = rows - std::min(rows, changed);
     report.bodies = scene.body_count();
-    if (phases)
+    if (phases) {
         find_streamed(scene, row);
-    else
+    } else {
+        make_boxes(scene);
         find_listed(scene, row);
+    }
     if (tell_events) events.update(pairs);  // last, since a step that fails counts for none
     stepped_identity = scene.impl().identity;
     stepped_version = scene.version();
@@ -235,16 +240,22 @@ void StepResult::Impl::find_listed(const Scene& scene, const detail::AlgorithmRo
     take_contacts();
 }
 
+// What a streamed step begins with.
+detail::PhaseStream::Prepared StepResult::Impl::prepare(const Scene& scene) {
+    make_boxes(scene);
+    const std::vector<Pair>& with_planes = find_plane_pairs(scene);
+    return {on_device ? detail::BoxInput(device_bounds->device(), device_bounds->boxes().handle(), 0,
+                                         static_cast<std::uint32_t>(rows))
+                      : detail::BoxInput(host_bounds->boxes(), broad.impl().staging),
+            filters(scene), with_planes};
+}
+
 // Pairs on their way to contacts; none is kept.
 void StepResult::Impl::find_streamed(const Scene& scene, const detail::AlgorithmRow& row) {
-    const std::vector<Pair>& with_planes = find_plane_pairs(scene);
-    detail::BoxInput boxes = on_device ? detail::BoxInput(device_bounds->device(), device_bounds->boxes().handle(), 0,
-                                                          static_cast<std::uint32_t>(rows))
-                                       : detail::BoxInput(host_bounds->boxes(), broad.impl().staging);
-    const detail::PhaseStream::Done done = phases->run({scene, row, boxes, filters(scene), with_planes});
+    const detail::PhaseStream::Done done = phases->run({scene, row, [&] { return prepare(scene); }});
     contacts = narrow->impl().result.contacts.view();
     broad.impl().report.bodies = rows;  // for the choice of the next step
-    broad.impl().report.pairs = done.pairs - with_planes.size();
+    broad.impl().report.pairs = done.pairs - done.more_pairs;
     broad.impl().note_memory();
     report.peak_host_bytes = broad.report().peak_host_bytes;
     take_contacts();

@@ -49,11 +49,13 @@ struct StepResult::Impl {
 
     void step(const Scene& scene);
     void find_listed(const Scene& scene, const detail::AlgorithmRow& row);
+    detail::PhaseStream::Prepared prepare(const Scene& scene);
     void find_streamed(const Scene& scene, const detail::AlgorithmRow& row);
     bool nothing_changed(const Scene& scene) const;
     void step_again();
     void start_afresh();
     void leave_bounds();
+    void make_boxes(const Scene& scene);
     std::size_t make_boxes_on_device(const Scene& scene);
     std::size_t make_boxes_on_host(const Scene& scene);
     detail::FilterInput filters(const Scene& scene);
