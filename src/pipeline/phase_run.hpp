@@ -54,7 +54,7 @@ public:
     /// Pairs that were found, in the thread of that device, or `host`.
     void take(std::size_t device, View<const Pair> pairs);
     /// Pairs that should be found at a time, at most.
-    std::size_t piece() const noexcept { return 4 * chunk_pairs_; }
+    std::size_t piece() const noexcept { return 2 * chunk_pairs_; }
     /// Where pairs go that no device of the broad phase has found.
     std::size_t broad_place() const noexcept { return roles_.broad.empty() ? host : roles_.broad.front(); }
 

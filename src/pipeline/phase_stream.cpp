@@ -74,11 +74,15 @@ PhaseRoles PhaseStream::roles_for(const AlgorithmRow& row, const std::vector<std
     return roles;
 }
 
-// Chunks enough for all devices to be done at about the same time, but none so small that it is all beginning.
+// Chunks enough for all devices to be done at about the same time, but none so short that it is all beginning: that
+// takes a few tenths of a millisecond.
 std::size_t PhaseStream::chunk_pairs(std::uint64_t expected) const {
-    constexpr std::uint64_t unknown = 16384, least = 4096, chunks_a_device = 2;
+    constexpr std::uint64_t unknown = 16384, most_least = 4096, chunks_a_device = 2;
+    constexpr double least_ms = 0.75;
     if (forced.chunk_pairs > 0) return std::max<std::size_t>(forced.chunk_pairs, NarrowStream::few_pairs);
     if (expected == 0) return unknown;
+    const auto least = static_cast<std::uint64_t>(
+        std::clamp(least_ms / std::max(last_pair_ms_, 1e-9), double{NarrowStream::few_pairs}, double{most_least}));
     const std::uint64_t chunks = chunks_a_device * std::max<std::size_t>(1, context_.crew().size());
     return static_cast<std::size_t>(std::clamp<std::uint64_t>(expected / chunks, least, Slots::chunk_pairs));
 }
@@ -142,6 +146,7 @@ PhaseStream::Done PhaseStream::run(const Step& step) {
         throw;
     }
     last_pairs_ = phases.pairs();
+    last_pair_ms_ = phases.narrow_work_ms() / static_cast<double>(std::max<std::uint64_t>(1, phases.pairs()));
     learn(phases, roles);
     return Done{phases.counts(),
                 phases.pairs(),

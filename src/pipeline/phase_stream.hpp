@@ -79,6 +79,7 @@ private:
     std::optional<PhaseBalance> balance_;
     unsigned balanced_ = 0;  // units that it has
     std::uint64_t last_pairs_ = 0;
+    double last_pair_ms_ = 0.0;  // a device's time for one
     PhaseRun::Memory memory_;
 };
 
