@@ -333,17 +333,18 @@ void Device::clear(const Buffer& buffer, std::size_t bytes) {
     });
 }
 
-Mapping Device::map_for(cl_map_flags flags, const Buffer& buffer, std::size_t bytes) {
+Mapping Device::map_for(cl_map_flags flags, const Buffer& buffer, std::size_t bytes, bool wait) {
     Mapping mapping;
     if (bytes == 0) return mapping;
     void* pointer = nullptr;
     impl_->begin();
     impl_->make("clEnqueueMapBuffer", [&] {
         cl_int status = CL_SUCCESS;
-        pointer = clEnqueueMapBuffer(queue(), buffer.handle(), CL_TRUE, flags, 0, bytes, 0, nullptr, nullptr, &status);
+        pointer = clEnqueueMapBuffer(queue(), buffer.handle(), wait ? CL_TRUE : CL_FALSE, flags, 0, bytes, 0, nullptr,
+                                     nullptr, &status);
         return status;
     });
-    impl_->end();
+    if (wait) impl_->end();
     mapping.device_ = this;
     mapping.memory_ = buffer.handle();
     mapping.pointer_ = pointer;
@@ -351,11 +352,15 @@ Mapping Device::map_for(cl_map_flags flags, const Buffer& buffer, std::size_t by
 }
 
 Mapping Device::map(const Buffer& buffer, std::size_t bytes) {
-    return map_for(CL_MAP_READ, buffer, bytes);
+    return map_for(CL_MAP_READ, buffer, bytes, true);
+}
+
+Mapping Device::map_later(const Buffer& buffer, std::size_t bytes) {
+    return map_for(CL_MAP_READ, buffer, bytes, false);
 }
 
 Mapping Device::map_to_write(const Buffer& buffer, std::size_t bytes) {
-    return map_for(CL_MAP_WRITE_INVALIDATE_REGION, buffer, bytes);
+    return map_for(CL_MAP_WRITE_INVALIDATE_REGION, buffer, bytes, true);
 }
 
 void Device::written(Mapping mapping) {

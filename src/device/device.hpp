@@ -180,6 +180,8 @@ public:
     void clear(const Buffer& buffer, std::size_t bytes);
     /// Readable host memory of the first `bytes`; waits for it. `buffer` must outlive the mapping.
     Mapping map(const Buffer& buffer, std::size_t bytes);
+    /// The same without waiting: it may be read when a later command has been waited for.
+    Mapping map_later(const Buffer& buffer, std::size_t bytes);
     /// Host memory for the first `bytes`, of which all must be written before the mapping ends.
     Mapping map_to_write(const Buffer& buffer, std::size_t bytes);
     /// Ends such a mapping: what was written is the buffer's from here on.
@@ -205,7 +207,7 @@ public:
 
 private:
     friend class Mapping;
-    Mapping map_for(cl_map_flags flags, const Buffer& buffer, std::size_t bytes);
+    Mapping map_for(cl_map_flags flags, const Buffer& buffer, std::size_t bytes, bool wait);
     void write_later(const Buffer& buffer, std::vector<std::byte> data, std::size_t offset);
     struct Impl;
     std::unique_ptr<Impl> impl_;

@@ -202,10 +202,12 @@ SlotAnswers Slots::in_place(bool only_pairs) {
     out.numbered = numbered_;
     out.stride = stride_;
     out.rests = float64_;
-    out.hits = device_.map(hits_, std::size_t{slots_used_} * sizeof(std::uint32_t));
-    if (numbered_) out.slots = device_.map(slot_of_, n_ * sizeof(std::uint32_t));
+    // The last one waits for all.
+    if (numbered_) out.slots = device_.map_later(slot_of_, n_ * sizeof(std::uint32_t));
     if (!only_pairs)
-        out.columns = device_.map(answers_, stride_ * (answer_columns + (float64_ ? rest_columns : 0)) * sizeof(float));
+        out.columns =
+            device_.map_later(answers_, stride_ * (answer_columns + (float64_ ? rest_columns : 0)) * sizeof(float));
+    out.hits = device_.map(hits_, std::size_t{slots_used_} * sizeof(std::uint32_t));
     return out;
 }
 

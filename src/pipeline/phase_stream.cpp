@@ -84,7 +84,9 @@ std::size_t PhaseStream::chunk_pairs(std::uint64_t expected) const {
     const auto least = static_cast<std::uint64_t>(
         std::clamp(least_ms / std::max(last_pair_ms_, 1e-9), double{NarrowStream::few_pairs}, double{most_least}));
     const std::uint64_t chunks = chunks_a_device * std::max<std::size_t>(1, context_.crew().size());
-    return static_cast<std::size_t>(std::clamp<std::uint64_t>(expected / chunks, least, Slots::chunk_pairs));
+    // A few more than that share: else a few pairs too many would make one more chunk.
+    const std::uint64_t share = expected / chunks + expected / (16 * chunks) + 1;
+    return static_cast<std::size_t>(std::clamp<std::uint64_t>(share, least, Slots::chunk_pairs));
 }
 
 // Whether boxes are searched where they are made: on the primary device, or the host.
