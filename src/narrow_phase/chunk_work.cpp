@@ -31,8 +31,11 @@ void ChunkWork::solve(const NarrowCall& call, std::size_t first, std::size_t cou
 
 void ChunkWork::group(const NarrowCall& call) {
     const Stopwatch watch;
-    slots_.group(pairs_, worker_.scene(), static_cast<std::uint32_t>(call.scene.row_count()),
-                 worker_.settings().level != Level::Fast);
+    const bool with_rests = worker_.settings().level != Level::Fast;
+    if (worker_.info().unified_memory && pairs_.size() <= worker_.settings().grouped_on_host)
+        slots_.group_on_host(pairs_, worker_.scene(), with_rests);
+    else
+        slots_.group(pairs_, worker_.scene(), static_cast<std::uint32_t>(call.scene.row_count()), with_rests);
     worker_.stage_done();
     worker_.share().ms.buckets += watch.ms();
 }

@@ -28,6 +28,9 @@ struct NarrowSettings {
     Level level;
     NarrowShapes shapes;  ///< those of the scene of the call
     HostBodies bodies;    ///< devices bring them up to date
+    /// Chunks of at most so many pairs are grouped on the host where it shares the device's memory: that is done
+    /// before a device has begun with the first of some ten commands. None of them waits at this size.
+    std::size_t grouped_on_host = 8192;
     Plans plans;
 };
 

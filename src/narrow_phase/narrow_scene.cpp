@@ -85,6 +85,7 @@ void NarrowScene::update(const Scene& scene, const NarrowShapes& shapes, unsigne
 
 void NarrowScene::update_classes(const Scene& scene, const NarrowShapes& shapes) {
     const HostBodies::Classes now = host_.classes(scene, shapes);
+    host_classes_ = now.classes;
     if (now.version == classes_version_ || now.classes.empty()) return;
     classes_version_ = 0;  // until all went well
     device_.reserve(classes_, now.classes.size(), "the classes of bodies");

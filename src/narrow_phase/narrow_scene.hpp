@@ -31,6 +31,8 @@ public:
     const Buffer& faces(unsigned bits) const { return shapes_of(bits).faces; }
     const Buffer& corners(unsigned bits) const { return shapes_of(bits).corners; }
     const Buffer& classes() const { return classes_; }
+    /// The same on the host, until the scene changes.
+    View<const std::uint8_t> classes_on_host() const { return host_classes_; }
     /// One float a row, rounded up; only if has_margins().
     const Buffer& margins() const { return margins_; }
     bool has_margins() const noexcept { return has_margins_; }
@@ -64,6 +66,7 @@ private:
     Shapes shapes32_, shapes64_;
     Buffer rows_, records_, classes_, margins_;
     std::uint64_t classes_version_ = 0;  // that were sent; 0: none
+    View<const std::uint8_t> host_classes_;
     bool has_margins_ = false;
 };
 

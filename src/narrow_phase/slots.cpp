@@ -27,7 +27,7 @@ std::uint32_t Slots::runs_for(std::uint32_t count) const {
     return std::max(least, std::clamp(count / 1024, 1u, info.compute_units * (info.lanes > 1 ? 8u : 64u)));
 }
 
-void Slots::group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_t bodies, bool with_rests) {
+void Slots::begin(View<const Pair> pairs, bool with_rests) {
     n_ = static_cast<std::uint32_t>(pairs.size());
     with_rests_ = with_rests;
     float64_ = false;
@@ -39,11 +39,15 @@ void Slots::group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_
         keys_kernel_ = device_.kernel(module, "bucket_keys");
     }
     device_.clear(undecided_, most_buckets * sizeof(std::uint32_t));
-    const std::uint32_t items = runs_for(n_), per_item = (n_ - 1) / items + 1;
     device_.reserve(pairs_, n_ * sizeof(Pair), "the pairs of a chunk");
+    device_.write(pairs_, pairs.data(), n_ * sizeof(Pair));
+}
+
+void Slots::group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_t bodies, bool with_rests) {
+    begin(pairs, with_rests);
+    const std::uint32_t items = runs_for(n_), per_item = (n_ - 1) / items + 1;
     device_.reserve(keys_, n_ * sizeof(std::uint32_t), "the buckets of pairs");
     device_.reserve(counts_, std::size_t{items} * most_buckets * sizeof(std::uint32_t), "the counts of buckets");
-    device_.write(pairs_, pairs.data(), n_ * sizeof(Pair));
     const std::size_t group = device_.group_size();
     device_.launch(keys_kernel_.args(pairs_, n_, scene.classes(), bodies, table_, per_item, items, keys_, counts_),
                    (items + group - 1) / group, group);
@@ -52,7 +56,36 @@ void Slots::group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_
     std::vector<std::uint64_t> counts(most_buckets, 0);
     for (std::size_t i = 0; i < by_item.size(); ++i) counts[i % most_buckets] += by_item[i];
     if (counts[no_bucket] > 0) throw_no_bucket(pairs);
-    number_slots(counts);
+    if (!number_slots(counts)) return;
+    sort_.sort(keys_, numbers_, n_, key_bits, true);
+    number_pairs(true);
+}
+
+void Slots::group_on_host(View<const Pair> pairs, const NarrowScene& scene, bool with_rests) {
+    const View<const std::uint8_t> classes = scene.classes_on_host();
+    std::vector<std::uint8_t> buckets(pairs.size());
+    std::vector<std::uint64_t> counts(most_buckets, 0);
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const Pair& pair = pairs[i];
+        const std::uint8_t a = pair.a < classes.size() ? classes[pair.a] : no_class,
+                           b = pair.b < classes.size() ? classes[pair.b] : no_class;
+        buckets[i] = a < 8 && b < 8 && pair.a < pair.b ? bucket_table()[8 * std::size_t{a} + b] : no_bucket;
+        if (buckets[i] == no_bucket) throw_no_routine(pair);
+        ++counts[buckets[i]];
+    }
+    begin(pairs, with_rests);
+    if (!number_slots(counts)) return;
+    std::vector<std::uint32_t> numbers(pairs.size()), slots(pairs.size());
+    std::array<std::uint32_t, most_buckets> done{};
+    for (std::uint32_t i = 0; i < n_; ++i) {
+        const BucketSlice& slice = slices_[buckets[i]];
+        const std::uint32_t place = done[buckets[i]]++;
+        numbers[slice.first + place] = i;
+        slots[i] = slice.first_slot + place;
+    }
+    device_.write(numbers_, numbers.data(), n_ * sizeof(std::uint32_t));
+    device_.write(slot_of_, slots.data(), n_ * sizeof(std::uint32_t));
+    numbered_ = true;
 }
 
 // Says which pair it is that no bucket takes.
@@ -63,7 +96,8 @@ void Slots::throw_no_bucket(View<const Pair> pairs) {
     throw_no_routine(pairs[i]);
 }
 
-void Slots::number_slots(const std::vector<std::uint64_t>& counts) {
+// Returns whether there are several buckets.
+bool Slots::number_slots(const std::vector<std::uint64_t>& counts) {
     std::vector<std::uint32_t> first_pair, first_slot;
     slices_.assign(matrix().size(), {});
     const bool listed = std::count_if(counts.begin(), counts.end(), [](std::uint64_t c) { return c > 0; }) > 1;
@@ -92,9 +126,7 @@ void Slots::number_slots(const std::vector<std::uint64_t>& counts) {
     device_.write(first_slots_, first_slot.data(), first_slot.size() * sizeof(std::uint32_t));
     buckets_used_ = static_cast<std::uint32_t>(first_pair.size());
     numbered_ = false;
-    if (!listed) return;
-    sort_.sort(keys_, numbers_, n_, key_bits, true);
-    number_pairs(true);
+    return listed;
 }
 
 // Writes down the slot of each pair.

@@ -70,6 +70,8 @@ public:
     /// Sends the pairs, counts them by bucket, sorts them by it if there are several, and numbers their slots. Waits. A
     /// pair without a bucket is InvalidArgument. `with_rests`: answers may be float64.
     void group(View<const Pair> pairs, const NarrowScene& scene, std::uint32_t bodies, bool with_rests);
+    /// The same done by the host, which waits for nothing.
+    void group_on_host(View<const Pair> pairs, const NarrowScene& scene, bool with_rests);
     /// The pairs of bucket k; none of them: nothing is to be done.
     const BucketSlice& bucket(std::size_t k) const { return slices_[k]; }
     std::size_t bucket_count() const { return slices_.size(); }
@@ -109,7 +111,8 @@ public:
 private:
     std::uint32_t runs_for(std::uint32_t count) const;
     [[noreturn]] void throw_no_bucket(View<const Pair> pairs);
-    void number_slots(const std::vector<std::uint64_t>& counts);
+    void begin(View<const Pair> pairs, bool with_rests);
+    bool number_slots(const std::vector<std::uint64_t>& counts);
     void number_pairs(bool listed);
 
     Device& device_;

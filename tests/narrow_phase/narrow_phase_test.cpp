@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "clinch/error.hpp"
+#include "src/narrow_phase/narrow_phase_impl.hpp"
 #include "tests/device/devices.hpp"
 #include "tests/narrow_phase/narrow_scenes.hpp"
 
@@ -180,6 +181,24 @@ TEST_CASE("a narrow phase of few bodies in lanes", "[device][plain]") {
     check_few(8);
 }
 
+TEST_CASE("few pairs are grouped alike by the host and by a device", "[device][plain]") {
+    test::Random random(79);
+    INFO("seed 79");
+    const Scene scene = test::random_bodies(18, 1.2, {0, 0, 0}, random);
+    const std::vector<Pair> all = test::all_pairs(scene);
+    // Of several classes, and of one.
+    const std::vector<Pair> alike(200, all.front());
+    for (std::uint32_t i = 0; i < list_devices().size(); ++i)
+        for (const std::vector<Pair>& pairs : {all, alike}) {
+            Context context = test::with_lanes(i, 1);
+            NarrowPhase by_host(context), by_device(context);
+            by_device.impl().settings.grouped_on_host = 0;
+            const std::vector<Contact> contacts = found(by_host, scene, pairs);
+            CHECK(same_bytes(contacts, found(by_device, scene, pairs)));
+            if (pairs.size() == all.size()) CHECK(contacts.size() > 20);
+        }
+}
+
 TEST_CASE("a narrow phase keeps up with a scene that changes", "[device]") {
     test::Random random(74);
     INFO("seed 74");
@@ -308,7 +327,7 @@ TEST_CASE("what the narrow phase cannot take is named", "[device]") {
     scene.add_body(body);
     body.shape = scene.add_shape(Sphere{-1.0});
     scene.add_body(body);
-    for (const std::size_t times : {1u, 1000u}) {  // on the host, on a device
+    for (const std::size_t times : {1u, 1000u, 10000u}) {  // on the host, on a device, grouped by it, too
         CHECK(error_of(scene, {{0, 1}, {0, 2}}, times).empty());
         for (const Pair& pair : {Pair{1, 0}, Pair{1, 1}, Pair{2, 3}, Pair{0, 4}, Pair{1, 5}, Pair{0, 6}}) {
             const std::string what = error_of(scene, {{0, 1}, pair}, times);
