@@ -46,9 +46,10 @@ void ask_for(const Contact& row) {
 
 // Rows are cut into blocks, and bodies into as many parts: each block counts and then places its rows by the part of
 // their a.
-void ContactOrder::deal(View<const std::uint64_t> keys, std::uint32_t bodies) {
+template <class Word>
+void ContactOrder::deal(Places<Word>& places, View<const std::uint64_t> keys) {
     const std::size_t n = keys.size(), count = block_count(n);
-    const auto part_of = [&](std::uint64_t key) { return static_cast<std::size_t>((key >> 32) * count / bodies); };
+    const auto part_of = [&](std::uint64_t key) { return static_cast<std::size_t>((key >> 32) * count / bodies_); };
     at_.assign(count * count, 0);
     std::size_t* const at = at_.data();
     parallel_for(count, count > 1,
@@ -64,45 +65,51 @@ void ContactOrder::deal(View<const std::uint64_t> keys, std::uint32_t bodies) {
         }
     }
     firsts_.push_back(before);
-    if (places_.size() < n) {
-        places_.resize(n + n / 8);
-        spare_.resize(n + n / 8);
+    if (places.all.size() < n) {
+        places.all.resize(n + n / 8);
+        places.spare.resize(n + n / 8);
     }
-    Place* const places = places_.data();
+    Place<Word>* const all = places.all.data();
     parallel_for(count, count > 1, [&](std::size_t k) {
-        each_of(k, n, [&](std::size_t i) { places[at[k * count + part_of(keys[i])]++] = {keys[i], i}; });
+        each_of(k, n, [&](std::size_t i) {
+            const std::size_t part = part_of(keys[i]);
+            const std::uint64_t first = part * bodies_ / count;  // no a of the part is below it
+            const std::uint64_t key = ((keys[i] >> 32) - first) << b_bits_ | (keys[i] & 0xffffffffu);
+            all[at[k * count + part]++] = {static_cast<Word>(key), static_cast<Word>(i)};
+        });
     });
 }
 
 // A body that lies against most others, as a floor does, makes a part of most rows: by digits that is no more work a
 // row than elsewhere.
-void ContactOrder::sort(std::size_t part, std::uint32_t bodies) {
-    Place* const first = places_.data() + firsts_[part];
-    const std::size_t count = firsts_[part + 1] - firsts_[part];
-    if (count < 2) return;
-    const unsigned b_bits = bits_of(bodies - 1);
-    std::uint64_t least = ~std::uint64_t{0}, most = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        const std::uint64_t a = first[i].key >> 32;
-        least = std::min(least, a);
-        most = std::max(most, a);
-    }
-    host_radix_sort(
-        first, spare_.data() + firsts_[part], count, bits_of(most - least) + b_bits,
-        [&](const Place& place) { return ((place.key >> 32) - least) << b_bits | (place.key & 0xffffffffu); });
-}
-
-void ContactOrder::put(View<const Contact> rows, View<const std::uint64_t> keys, std::uint32_t bodies, Contact* to) {
+template <class Word>
+void ContactOrder::put_by(Places<Word>& places, View<const Contact> rows, View<const std::uint64_t> keys, Contact* to) {
     const std::size_t n = rows.size(), count = block_count(n);
-    deal(keys, bodies);
-    parallel_for(count, count > 1, [&](std::size_t part) { sort(part, bodies); });
+    deal(places, keys);
+    Place<Word>* const all = places.all.data();
+    parallel_for(count, count > 1, [&](std::size_t part) {
+        host_radix_sort(all + firsts_[part], places.spare.data() + firsts_[part], firsts_[part + 1] - firsts_[part],
+                        std::min(64u, part_bits_ + b_bits_), [](const Place<Word>& place) { return place.key; });
+    });
     constexpr std::size_t ahead = 12;
     parallel_for(count, count > 1, [&](std::size_t k) {
         each_of(k, n, [&](std::size_t i) {
-            if (i + ahead < n) ask_for(rows[places_[i + ahead].row]);
-            to[i] = rows[places_[i].row];
+            if (i + ahead < n) ask_for(rows[all[i + ahead].row]);
+            to[i] = rows[all[i].row];
         });
     });
+}
+
+void ContactOrder::put(View<const Contact> rows, View<const std::uint64_t> keys, std::uint32_t bodies, Contact* to) {
+    const std::size_t n = rows.size();
+    if (n == 0) return;
+    bodies_ = bodies;
+    b_bits_ = bits_of(bodies_ - 1);
+    part_bits_ = bits_of(bodies_ / block_count(n) + 1);
+    if (b_bits_ + part_bits_ <= 32 && n <= 0xffffffffu)
+        put_by(narrow_, rows, keys, to);
+    else
+        put_by(wide_, rows, keys, to);
 }
 
 }  // namespace clinch::detail

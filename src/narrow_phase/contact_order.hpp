@@ -17,21 +17,31 @@ public:
     static std::uint64_t key(const Contact& c) noexcept { return std::uint64_t{c.a} << 32 | c.b; }
 
     /// Copies all `rows` to `to`, ascending by their `keys`, whose a and b are below `bodies`; rows of one pair stay in
-    /// their order. On the host's threads: two reads of the keys, some of 16 bytes a row in a core's cache, one of the
-    /// rows, at random places, and one write.
+    /// their order. On the host's threads: two reads of the keys, some of 8 or 16 bytes a row in a core's cache, one of
+    /// the rows, at random places, and one write.
     void put(View<const Contact> rows, View<const std::uint64_t> keys, std::uint32_t bodies, Contact* to);
 
 private:
+    // A row and its key: of which bodies its part has, and b.
+    template <class Word>
     struct Place {
-        std::uint64_t key;
-        std::size_t row;
+        Word key, row;
     };
-    void deal(View<const std::uint64_t> keys, std::uint32_t bodies);
-    void sort(std::size_t part, std::uint32_t bodies);
+    template <class Word>
+    struct Places {
+        std::vector<Place<Word>> all, spare;  // part by part
+    };
+    template <class Word>
+    void put_by(Places<Word>& places, View<const Contact> rows, View<const std::uint64_t> keys, Contact* to);
+    template <class Word>
+    void deal(Places<Word>& places, View<const std::uint64_t> keys);
 
-    std::vector<Place> places_, spare_;  // of all rows, part by part
-    std::vector<std::size_t> at_;        // of each part in each block
-    std::vector<std::size_t> firsts_;    // of each part in places_; the end
+    std::uint64_t bodies_ = 0;
+    unsigned b_bits_ = 0, part_bits_ = 0;  // of a key
+    Places<std::uint32_t> narrow_;         // where keys are that short
+    Places<std::uint64_t> wide_;
+    std::vector<std::size_t> at_;      // of each part in each block
+    std::vector<std::size_t> firsts_;  // places of each part; the end
 };
 
 }  // namespace clinch::detail
