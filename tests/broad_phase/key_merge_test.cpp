@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <iterator>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "tests/random.hpp"
@@ -58,6 +60,37 @@ std::vector<std::set<Pair>> deal(const std::set<Pair>& pairs, std::size_t count,
     return lists;
 }
 
+using Run = std::vector<std::uint32_t>;
+
+// Two lists of one bucket become one, in either order.
+void check_union(const Run& one, const Run& other) {
+    constexpr KeyLayout layout{1, 12, 20};
+    const auto count = [](const Run& run) { return static_cast<std::uint32_t>(run.size()); };
+    const Run one_starts{0, count(one)}, other_starts{0, count(other)};
+    const PairKeys p{layout, one, one_starts}, q{layout, other, other_starts};
+    Run keys;
+    std::set_union(one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(keys));
+    std::vector<Pair> expected;
+    for (const std::uint32_t key : keys) expected.push_back({key >> layout.b_bits, key & 0xfffffu});
+    for (const auto& lists : {std::vector<PairKeys>{p, q}, {q, p}, {p, q, p}}) {
+        PairList out;
+        merge_keys(lists, out);
+        const View<const Pair> found = out.view();
+        CHECK(std::equal(found.begin(), found.end(), expected.begin(), expected.end()));
+    }
+}
+
+// Keys of the one run and of the other take turns of `turn`; every `common`th of the other is one of the first, too.
+std::pair<Run, Run> in_turns(std::size_t keys, std::uint32_t turn, std::uint32_t common) {
+    std::pair<Run, Run> runs;
+    for (std::uint32_t k = 0; runs.first.size() + runs.second.size() < keys; ++k) {
+        const bool is_first = k / turn % 2 == 0;
+        (is_first ? runs.first : runs.second).push_back(k * 977);
+        if (!is_first && k % common == 0) runs.first.push_back(k * 977);
+    }
+    return runs;
+}
+
 }  // namespace
 
 TEST_CASE("lists of keys, with pairs that several of them have, become one", "[host]") {
@@ -82,6 +115,46 @@ TEST_CASE("lists of keys, with pairs that several of them have, become one", "[h
                     CHECK(std::equal(found.begin(), found.end(), pairs.begin(), pairs.end()));
                 }
             }
+}
+
+TEST_CASE("two runs become one however they lie and however long they are", "[host]") {
+    const std::uint64_t seed = 72;
+    INFO("seed " << seed);
+    test::Random random(seed);
+    const auto run_of = [&random](std::size_t size, std::uint64_t first, std::uint64_t range) {
+        std::set<std::uint32_t> keys;
+        while (keys.size() < size) keys.insert(static_cast<std::uint32_t>(first + random.below(range)));
+        return Run(keys.begin(), keys.end());
+    };
+    constexpr std::uint64_t all = std::uint64_t{1} << 32;
+    // About the lengths from which on runs are looked at, cut, and not quite full.
+    const std::vector<std::size_t> sizes{0, 1, 7, 8, 9, 31, 32, 33, 255, 256, 257, 319, 320, 321, 383, 500, 1023, 4099};
+    for (const std::size_t p : sizes)
+        for (const std::size_t q : sizes) {
+            if (q > p) continue;
+            INFO(p << " and " << q << " keys");
+            check_union(run_of(p, 0, all), run_of(q, 0, all));
+            check_union(run_of(p, 0, 2 * p + 1), run_of(q, 0, 2 * p + 1));             // many are common
+            check_union(run_of(p, all - p, p), run_of(q, all - p, p));                 // all are: the highest
+            check_union(run_of(p, 0, all / 2), run_of(q, all / 2, all / 2));           // one before the other
+            check_union(run_of(p, 0, all), run_of(q, all / 3, q + std::uint64_t{1}));  // within a gap of the other
+        }
+    for (const std::uint32_t turn : {1u, 2u, 5u, 7u, 8u, 9u, 23u, 100u, 3000u})
+        for (const std::uint32_t common : {2u, 30u, 1000000u})
+            for (const std::size_t keys : {511u, 640u, 1000u, 9000u}) {
+                INFO(keys << " keys in turns of " << turn << ", one of " << common << " common");
+                const auto [one, other] = in_turns(keys, turn, common);
+                check_union(one, other);
+            }
+    // At first key by key, then in long blocks, and the other way round.
+    auto [one, other] = in_turns(4000, 1, 30);
+    const auto [one_blocks, other_blocks] = in_turns(4000, 50, 30);
+    for (const bool blocks_first : {false, true}) {
+        Run p = blocks_first ? one_blocks : one, q = blocks_first ? other_blocks : other;
+        for (const std::uint32_t key : blocks_first ? one : one_blocks) p.push_back(key + 8000 * 977);
+        for (const std::uint32_t key : blocks_first ? other : other_blocks) q.push_back(key + 8000 * 977);
+        check_union(p, q);
+    }
 }
 
 TEST_CASE("keys of many more pairs than caches hold become one list", "[host]") {
