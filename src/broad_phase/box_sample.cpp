@@ -1,9 +1,24 @@
 #include "src/broad_phase/box_sample.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
+
+#include "src/primitives/host_parallel.hpp"
 
 namespace clinch::detail {
+
+namespace {
+
+bool is_box(const Aabb& box) {
+    bool valid = true;
+    for (int d = 0; d < 3; ++d)
+        valid = valid && std::isfinite(box.min[d]) && std::isfinite(box.max[d]) && box.min[d] <= box.max[d];
+    return valid;
+}
+
+}  // namespace
 
 std::vector<Aabb> sample_of(View<const Aabb> boxes, std::size_t size) {
     std::vector<Aabb> sample;
@@ -12,12 +27,28 @@ std::vector<Aabb> sample_of(View<const Aabb> boxes, std::size_t size) {
     for (std::size_t k = 0; k < size && !boxes.empty(); ++k) {
         random = random * 1664525u + 1013904223u;  // [Knuth, The Art of Computer Programming 2, 3.3.4]
         const Aabb& box = boxes[static_cast<std::size_t>(std::uint64_t{random} * boxes.size() >> 32)];
-        bool valid = true;
-        for (int d = 0; d < 3; ++d)
-            valid = valid && std::isfinite(box.min[d]) && std::isfinite(box.max[d]) && box.min[d] <= box.max[d];
-        if (valid) sample.push_back(box);
+        if (is_box(box)) sample.push_back(box);
     }
     return sample;
+}
+
+std::vector<float> begins_of(View<const Aabb> boxes, int axis, std::size_t size) {
+    constexpr std::size_t least_for_threads = 16384;
+    size = std::min(size, boxes.size());
+    std::vector<float> begins(size);
+    if (size == 0) return begins;
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    const std::uint64_t stretch = (std::uint64_t{boxes.size()} << 32) / size;  // its length, in parts of 2^-32
+    parallel_rows(size, least_for_threads, [&](std::size_t k) {
+        // Multiples of the golden section [Knuth, The Art of Computer Programming 3, 6.4].
+        const std::uint32_t random = static_cast<std::uint32_t>(k) * 2654435769u;
+        const std::uint64_t within = (stretch >> 16) * (random >> 16);
+        const Aabb& box = boxes[static_cast<std::size_t>((k * stretch + within) >> 32)];
+        begins[k] = is_box(box) ? box.min[axis] : none;
+    });
+    begins.erase(std::remove_if(begins.begin(), begins.end(), [](float begin) { return std::isnan(begin); }),
+                 begins.end());
+    return begins;
 }
 
 }  // namespace clinch::detail

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "src/broad_phase/box_sample.hpp"
 #include "src/primitives/host_parallel.hpp"
@@ -9,8 +10,43 @@
 namespace clinch::detail {
 namespace {
 
-constexpr std::size_t sample_size = 4096, boxes_a_block = std::size_t{1} << 15;
+constexpr std::size_t sample_size = 4096, begins_size = 65536, boxes_a_block = std::size_t{1} << 15;
 constexpr double slack_widths = 0.25;  // of boxes: bodies that move much farther in a step are few
+
+using Floats = std::vector<float>::iterator;
+using Places = std::vector<std::size_t>::const_iterator;
+
+// Brings to some places, ascending, the values that all from `start` on would have there if they were in order. Those
+// places, and the values, are in [first, last).
+void bring_to_places(Floats start, Floats first, Floats last, Places place, Places places_end) {
+    if (place == places_end) return;
+    const Places middle = place + (places_end - place) / 2;
+    const Floats nth = start + static_cast<std::ptrdiff_t>(*middle);
+    std::nth_element(first, nth, last);
+    bring_to_places(start, first, nth, place, middle);
+    bring_to_places(start, nth + 1, last, middle + 1, places_end);
+}
+
+// Cuts by which boxes that begin at `begins`, one at least, lie in slabs as `fractions` say.
+std::vector<float> cuts_for(std::vector<float> begins, const std::vector<double>& fractions) {
+    std::vector<std::size_t> places;
+    double before = 0.0;
+    for (std::size_t s = 0; s + 1 < fractions.size(); ++s) {
+        before += fractions[s];
+        places.push_back(static_cast<std::size_t>(std::clamp(before, 0.0, 1.0) * static_cast<double>(begins.size())));
+    }
+    std::vector<std::size_t> each = places;
+    each.erase(std::unique(each.begin(), each.end()), each.end());
+    while (!each.empty() && each.back() >= begins.size()) each.pop_back();
+    bring_to_places(begins.begin(), begins.begin(), begins.end(), each.begin(), each.end());
+    std::vector<float> cuts;
+    cuts.reserve(places.size());
+    for (const std::size_t place : places)  // Nothing begins behind the last: a share of all of them ends behind it.
+        cuts.push_back(place < begins.size()
+                           ? begins[place]
+                           : std::nextafter(*std::max_element(begins.begin(), begins.end()), HUGE_VALF));
+    return cuts;
+}
 
 Slabs slabs_across(int axis, const std::vector<Aabb>& sample, const std::vector<double>& fractions) {
     Slabs slabs;
@@ -18,15 +54,7 @@ Slabs slabs_across(int axis, const std::vector<Aabb>& sample, const std::vector<
     std::vector<float> begins;
     begins.reserve(sample.size());
     for (const Aabb& box : sample) begins.push_back(box.min[axis]);
-    std::sort(begins.begin(), begins.end());
-    double before = 0.0;
-    for (std::size_t s = 0; s + 1 < fractions.size(); ++s) {
-        before += fractions[s];
-        const double place = std::clamp(before, 0.0, 1.0) * static_cast<double>(begins.size());
-        // Nothing begins behind the last: a share of all of them ends behind it.
-        slabs.cuts.push_back(place >= static_cast<double>(begins.size()) ? std::nextafter(begins.back(), HUGE_VALF)
-                                                                         : begins[static_cast<std::size_t>(place)]);
-    }
+    slabs.cuts = cuts_for(std::move(begins), fractions);
     double width = 0.0;
     for (const Aabb& box : sample)
         width += (static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis])) /
@@ -54,6 +82,8 @@ Slabs choose_slabs(View<const Aabb> boxes, const std::vector<double>& fractions)
         Slabs slabs = slabs_across(axis, sample, fractions);
         if (axis == 0 || slabs.copies < best.copies) best = std::move(slabs);
     }
+    std::vector<float> begins = begins_of(boxes, best.axis, begins_size);
+    if (!begins.empty()) best.cuts = cuts_for(std::move(begins), fractions);
     return best;
 }
 

@@ -46,8 +46,9 @@ private:
 };
 
 /// Slabs in which boxes begin in proportion to `fractions` (which add up to 1; at most Slabs::most of them), across the
-/// axis on which the fewest boxes reach over a cut. By a sample of 4,096 boxes, always the same ones: less than a
-/// millisecond.
+/// axis on which the fewest boxes reach over a cut. The axis by a sample of 4,096 boxes, the cuts by where 65,536 of
+/// them begin (all, where they are not more): a share is off by 0.2 % of all boxes (one deviation) at most. Always the
+/// same samples. Of a million boxes about a millisecond, twice that for many slabs.
 Slabs choose_slabs(View<const Aabb> boxes, const std::vector<double>& fractions);
 
 /// The boxes of each slab. Members stay the same from call to call while they can, so that what an algorithm has made

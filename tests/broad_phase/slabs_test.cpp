@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <limits>
 
 #include "bench/scenes/boxes.hpp"
@@ -190,6 +191,51 @@ TEST_CASE("slabs hold the share of boxes that was asked for, across the axis tha
     deal.deal(boxes, slabs);
     for (std::size_t s = 0; s < 3; ++s)
         CHECK(static_cast<double>(deal.members(s).size()) / 20000.0 == Approx(fractions[s]).margin(0.03));
+}
+
+TEST_CASE("shares are as exact as the sample by which they are cut", "[host]") {
+    const std::uint64_t seed = 53;
+    INFO("seed " << seed);
+    constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    constexpr double sample = 65536.0, deviations = 4.0;
+    test::Random random(seed);
+    for (const std::size_t n : {40000u, 65536u, 65537u, 300000u}) {
+        std::vector<Aabb> boxes;
+        std::size_t invalid = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto at = [&] { return static_cast<float>(random.between(0.0, 100.0)); };
+            const float x = at(), y = at(), z = at();
+            boxes.push_back({{x, y, z}, {x + 0.01f, y + 1.0f, z + 1.0f}});
+            if (i % 50 != 7) continue;
+            boxes.back().min[invalid % 3] = invalid % 2 == 0 ? nan : inf;
+            ++invalid;
+        }
+        for (const std::vector<double>& fractions : std::vector<std::vector<double>>{
+                 {0.5, 0.5},
+                 {0.9, 0.1},
+                 {1.0, 0.0},
+                 {0.0, 1.0},
+                 {0.2, 0.3, 0.5},
+                 {0.25, 0.0, 0.75},
+                 {0.2, 0.1, 0.05, 0.15, 0.2, 0.2, 0.1},
+                 std::vector<double>(7, 1.0 / 7.0),
+                 std::vector<double>(Slabs::most, 1.0 / static_cast<double>(Slabs::most))}) {
+            const Slabs slabs = choose_slabs(boxes, fractions);
+            INFO(n << " boxes, " << fractions.size() << " slabs");
+            REQUIRE(slabs.count() == fractions.size());
+            CHECK(slabs.axis == 0);
+            CHECK(std::is_sorted(slabs.cuts.begin(), slabs.cuts.end()));
+            std::vector<std::size_t> begin_in(fractions.size(), 0);
+            for (std::size_t i = 0; i < n; ++i)
+                if (i % 50 != 7) ++begin_in[slabs.span_of(boxes[i]).first];
+            for (std::size_t s = 0; s < fractions.size(); ++s) {
+                const double share = static_cast<double>(begin_in[s]) / static_cast<double>(n - invalid);
+                // A few boxes begin at the same place; a sample of all is exact.
+                const double deviation = n <= 65536 ? 0.0 : std::sqrt(fractions[s] * (1.0 - fractions[s]) / sample);
+                CHECK(share == Approx(fractions[s]).margin(deviations * deviation + 2e-4));
+            }
+        }
+    }
 }
 
 TEST_CASE("what is no box is met in one slab at least, and boxes without end in all", "[host]") {
