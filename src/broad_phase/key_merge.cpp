@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <boost/container/vector.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -160,7 +161,9 @@ public:
     void make(const std::vector<PairKeys>& lists, const Part& part) {
         std::size_t room = 0;
         for (const PairKeys& list : lists) room += list.starts[part.end] - list.starts[part.first];
-        for (std::vector<std::uint32_t>& keys : rooms_) keys.resize(std::max(keys.size(), lists.size() > 1 ? room : 0));
+        const std::size_t rooms = lists.size() > 2 ? 2 : lists.size() > 1 ? 1 : 0;
+        for (std::size_t k = 0; k < rooms; ++k)
+            if (rooms_[k].size() < room) rooms_[k] = Room(room, boost::container::default_init);
         first_ = part.first;
         buckets_.clear();
         size_ = room = 0;
@@ -206,7 +209,8 @@ private:
         return runs_.empty() ? Keys() : runs_[0];
     }
 
-    std::vector<std::uint32_t> rooms_[2];
+    using Room = boost::container::vector<std::uint32_t>;  // is not filled first
+    Room rooms_[2];
     std::vector<Keys> runs_, buckets_;
     std::size_t first_ = 0, size_ = 0, place_ = 0;
 };
