@@ -15,8 +15,9 @@ namespace {
 
 // A part's keys and what becomes of them stay in a core's cache.
 constexpr std::size_t keys_a_part = std::size_t{1} << 14;
-// More than this is not in a cache any more when it is read.
-constexpr std::size_t pairs_past_caches = std::size_t{1} << 21;
+// Room for more than this is in no core's cache any more since it was last read: pairs written past the caches, a
+// million take 0.3 ms less (measured), and one who reads them 0.1 ms more.
+constexpr std::size_t pairs_past_caches = std::size_t{1} << 19;
 
 using Keys = View<const std::uint32_t>;
 
