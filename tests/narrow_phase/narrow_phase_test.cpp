@@ -205,7 +205,7 @@ TEST_CASE("a narrow phase keeps up with a scene that changes", "[device]") {
     Context context;
     Scene scene = test::random_bodies(50, 2.0, {0, 0, 0}, random);
     NarrowPhase kept(context);
-    for (int step = 0; step < 6; ++step) {
+    for (int step = 0; step < 8; ++step) {
         const std::vector<Pair> pairs = test::all_pairs(scene);
         // So few need no device, which must hear of what changed all the same.
         kept.find(scene, {pairs.data(), 2});
@@ -224,7 +224,14 @@ TEST_CASE("a narrow phase keeps up with a scene that changes", "[device]") {
             const std::vector<double> margins(scene.row_count(), 0.1);
             scene.set_margins(margins.data(), margins.size());
         }
-        if (step == 4) scene = test::random_bodies(40, 1.5, {0, 0, 0}, random);
+        if (step == 4) {
+            const std::vector<double> none(scene.row_count(), 0.0);
+            scene.set_margins(none.data(), none.size());
+        }
+        if (step == 5)  // most of them
+            for (std::uint32_t i = 0; i + 5 < scene.row_count(); ++i)
+                scene.set_pose({i}, {scene.body({i}).pose.position, test::random_rotation(random)});
+        if (step == 6) scene = test::random_bodies(40, 1.5, {0, 0, 0}, random);
     }
 }
 
