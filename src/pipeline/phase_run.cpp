@@ -91,8 +91,9 @@ void PhaseRun::do_chunk(std::size_t device, Chunk chunk) {
     memory_.spare.push_back(std::move(chunk));
 }
 
-void PhaseRun::do_all(std::size_t device) {
+void PhaseRun::do_all(std::size_t device, bool get_ready) {
     const ChunkBuffer<Chunk>::Consumer consumer(buffer_);
+    if (get_ready) work_on(device, [&] { narrow_.prepare(device); });
     while (std::optional<Chunk> chunk = buffer_.take()) do_chunk(device, std::move(*chunk));
 }
 
@@ -127,7 +128,7 @@ void PhaseRun::find_all(const FindPairs& find_pairs) {
     std::vector<std::size_t> free;
     for (const std::size_t device : roles_.broad)
         if (helps(device)) free.push_back(device);
-    for (const std::exception_ptr& error : run_crew(free.size(), [&](std::size_t k) { do_all(free[k]); }))
+    for (const std::exception_ptr& error : run_crew(free.size(), [&](std::size_t k) { do_all(free[k], false); }))
         if (error != nullptr) std::rethrow_exception(error);
 }
 
@@ -142,9 +143,7 @@ std::vector<std::exception_ptr> PhaseRun::run(const FindPairs& find_pairs, bool 
                 find_all(find_pairs);
                 return;
             }
-            const std::size_t device = consumers[k - 1];
-            if (expected && device != host) work_on(device, [&] { narrow_.prepare(device); });
-            do_all(device);
+            do_all(consumers[k - 1], expected && consumers[k - 1] != host);
         },
         [&](std::size_t) { buffer_.cancel(); });
     for (const auto& [device, hands] : hands_) pairs_ += hands.pairs;

@@ -81,7 +81,7 @@ private:
     template <class Work>
     void work_on(std::size_t device, const Work& work);
     void do_chunk(std::size_t device, Chunk chunk);
-    void do_all(std::size_t device);
+    void do_all(std::size_t device, bool get_ready);
     Chunk fresh();
 
     NarrowStream& narrow_;

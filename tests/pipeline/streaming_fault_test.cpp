@@ -125,3 +125,52 @@ TEST_CASE("a step that streams fails when no device is left, and the next one is
     CHECK((test::bytes(again.contacts()) == right));
     CHECK(again.report().warnings.empty());
 }
+
+TEST_CASE("a device that fails before its first chunk keeps nobody waiting", "[device]") {
+    test::Random random(99);
+    INFO("seed 99");
+    Scene scene = heap(random);
+    Context context = test::several(2);
+    Faults faults(context);
+    context.impl().least_boxes_a_device = 1;
+    Pipeline pipeline(context, streaming());
+    // Nobody else takes chunks, and few can wait.
+    pipeline.impl().phases->forced = {true, 1, 150};
+    std::vector<std::string> right(2);
+    std::size_t moves = 0;
+    const auto move = [&] {
+        const std::size_t place = ++moves % 2;
+        scene.set_pose({1}, {{4, 4, 4 + 0.5 * static_cast<double>(place)}, {}});
+        return place;
+    };
+    const auto check = [&] {
+        const std::size_t place = move();
+        const StepResult& result = pipeline.step(scene);
+        CHECK((test::bytes(result.contacts()) == right[place]));
+        return result.report().warnings.size();
+    };
+    for (int k = 0; k < 2; ++k) {
+        const std::size_t place = move();
+        const StepResult& result = pipeline.step(scene);
+        REQUIRE(result.report().pairs > 2000);
+        right[place] = test::bytes(result.contacts());
+    }
+    std::vector<std::size_t> calls(2, 0);
+    faults.fail(
+        [&](std::size_t d, const std::string&, std::size_t) {
+            ++calls[d];
+            return false;
+        },
+        CL_SUCCESS);
+    CHECK(check() == 0);
+    for (std::size_t device = 0; device < 2; ++device)
+        for (const std::size_t number : {std::size_t{0}, std::size_t{1}, calls[device] / 2}) {
+            INFO("device " << device << " fails at call " << number);
+            faults.fail(from_call(device, number), CL_OUT_OF_RESOURCES);
+            CHECK(check() == 1);
+            faults.watch();
+            context.impl().retired.clear();
+            CHECK(check() == 0);  // both are at work again
+            CHECK(check() == 0);
+        }
+}
