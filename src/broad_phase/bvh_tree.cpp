@@ -6,6 +6,7 @@
 #include <string>
 
 #include "src/device/quirks.hpp"
+#include "src/primitives/bits.hpp"
 
 namespace clinch::detail {
 
@@ -39,12 +40,6 @@ static_assert(sizeof(BvhMeasure) == 8, "kernels write this layout");
 // much, or the box tests of the search have.
 constexpr double most_growth = 1.5;
 constexpr double most_test_growth = 1.25;
-
-unsigned bits_of(std::uint64_t value) {
-    unsigned bits = 0;
-    for (; value != 0; value >>= 1) ++bits;
-    return bits;
-}
 
 // Widest box of the narrower half.
 float median_width(const BoxStatistics& stats) {

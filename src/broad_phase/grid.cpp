@@ -4,16 +4,12 @@
 #include <cmath>
 #include <vector>
 
+#include "src/primitives/bits.hpp"
+
 namespace clinch::detail {
 namespace {
 
 constexpr std::uint32_t parts = 8;  // PARTS of grid_large
-
-unsigned bits_of(std::uint64_t value) {
-    unsigned bits = 0;
-    for (; value != 0; value >>= 1) ++bits;
-    return bits;
-}
 
 // What is chosen from the statistics: which boxes are small, and the sides of a cell.
 struct Choice {

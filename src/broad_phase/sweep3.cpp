@@ -10,6 +10,7 @@
 #include "src/broad_phase/algorithm.hpp"
 #include "src/device/quirks.hpp"
 #include "src/device/stopwatch.hpp"
+#include "src/primitives/bits.hpp"
 #include "src/primitives/radix_sort.hpp"
 #include "src/primitives/scan.hpp"
 
@@ -20,12 +21,6 @@ namespace {
 constexpr std::size_t bytes_an_overlap = 2 * (8 + 4) + 4 + 4 + 8;
 // Smaller scratch memory than this is taken as this: a batch costs some forty launches.
 constexpr std::size_t least_scratch = std::size_t{1} << 20;
-
-std::uint32_t bits_of(std::uint32_t value) {
-    std::uint32_t bits = 0;
-    for (; value != 0; value >>= 1) ++bits;
-    return bits;
-}
 
 // Work-items that each own a run of consecutive entries.
 struct Runs {

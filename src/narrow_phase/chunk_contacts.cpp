@@ -170,7 +170,7 @@ void write_each(const Scene& scene, std::size_t count, const ContactAt& contact_
     parallel_rows(count, rows_worth_threads, [&](std::size_t i) {
         Contact c = contact_at(i);
         place(position[c.a], c);
-        std::memcpy(static_cast<void*>(to + i), &c, sizeof c);
+        std::memcpy(static_cast<void*>(to + i), &c, sizeof c);  // the unused bytes, too
     });
 }
 

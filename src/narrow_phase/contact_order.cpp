@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "src/primitives/bits.hpp"
 #include "src/primitives/host_parallel.hpp"
 #include "src/primitives/host_radix_sort.hpp"
 
@@ -23,12 +24,6 @@ template <class What>
 void each_of(std::size_t block, std::size_t rows, const What& what) {
     const std::size_t size = block_size(rows);
     for (std::size_t i = block * size, end = std::min(rows, i + size); i < end; ++i) what(i);
-}
-
-unsigned bits_of(std::uint64_t value) {
-    unsigned bits = 0;
-    for (; value != 0; value >>= 1) ++bits;
-    return bits;
 }
 
 // Asks for a row that is read soon, where there is an instruction for it.

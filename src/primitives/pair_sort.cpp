@@ -7,15 +7,10 @@
 
 #include "clinch/aabb.hpp"
 #include "src/device/quirks.hpp"
+#include "src/primitives/bits.hpp"
 
 namespace clinch::detail {
 namespace {
-
-std::uint32_t bits_of(std::uint32_t value) {
-    std::uint32_t bits = 0;
-    for (; value != 0; value >>= 1) ++bits;
-    return bits;
-}
 
 // Counters and lines of the buckets are private to a work-item: a CPU has them in its caches, a GPU has little room.
 std::uint32_t most_bucket_bits(const DeviceInfo& info) {
