@@ -154,7 +154,7 @@ kernel void bvh_keys(global const float* restrict boxes, ulong first, uint n, co
                      global const uint* restrict order, uint listed, global KEY* restrict keys) {
     uint at = get_global_id(0) * LANES;
     if (at >= n) return;
-    float columns[6 * LANES];
+    float columns[6 * LANES] __attribute__((aligned(64)));
     for (uint l = 0; l < LANES; ++l) {
         uint i = min(at + l, n - 1);
         put_row(columns, LANES, l, boxes + (first + (listed ? order[i] : i)) * 6);
@@ -228,7 +228,7 @@ kernel void bvh_leaves(global const float* restrict boxes, ulong first, global c
     for (uint c = item * per_item, end = min(nodes, c + per_item); c < end; ++c) {
         global float* block = c < blocks ? tree + c * (ulong)BLOCK : 0;
         if (block) {
-            float columns[BLOCK];
+            float columns[BLOCK] __attribute__((aligned(64)));
             uint count = min((uint)WIDTH, n - c * WIDTH);
             // The next rows are asked for first: they lie anywhere.
             for (uint l = 0; l < WIDTH && c + 2 < blocks; ++l) ask_for(boxes + order[(c + 1) * WIDTH + l] * (ulong)6);
@@ -288,9 +288,10 @@ inline uint overlapping(global const float* block, const BvhBox* b) {
 #define MOST_CANDIDATES 256
 #define CANDIDATES (MOST_CANDIDATES + LANES)  // a whole vector fits behind the last
 
+// On cache lines, which vectors of them would cross else.
 typedef struct {
-    float columns[6 * CANDIDATES];
-    uint ids[CANDIDATES];
+    float columns[6 * CANDIDATES] __attribute__((aligned(64)));
+    uint ids[CANDIDATES] __attribute__((aligned(64)));
     uint count;
     bool own;  // the first WIDTH are the block in search itself
 } Candidates;

@@ -32,11 +32,11 @@ std::vector<Aabb> sample_of(View<const Aabb> boxes, std::size_t size) {
     return sample;
 }
 
-std::vector<float> begins_of(View<const Aabb> boxes, int axis, std::size_t size) {
+std::vector<float> centres_of(View<const Aabb> boxes, int axis, std::size_t size) {
     constexpr std::size_t least_for_threads = 16384;
     size = std::min(size, boxes.size());
-    std::vector<float> begins(size);
-    if (size == 0) return begins;
+    std::vector<float> centres(size);
+    if (size == 0) return centres;
     constexpr float none = std::numeric_limits<float>::quiet_NaN();
     const std::uint64_t stretch = (std::uint64_t{boxes.size()} << 32) / size;  // its length, in parts of 2^-32
     parallel_rows(size, least_for_threads, [&](std::size_t k) {
@@ -44,11 +44,11 @@ std::vector<float> begins_of(View<const Aabb> boxes, int axis, std::size_t size)
         const std::uint32_t random = static_cast<std::uint32_t>(k) * 2654435769u;
         const std::uint64_t within = (stretch >> 16) * (random >> 16);
         const Aabb& box = boxes[static_cast<std::size_t>((k * stretch + within) >> 32)];
-        begins[k] = is_box(box) ? box.min[axis] : none;
+        centres[k] = is_box(box) ? 0.5f * box.min[axis] + 0.5f * box.max[axis] : none;
     });
-    begins.erase(std::remove_if(begins.begin(), begins.end(), [](float begin) { return std::isnan(begin); }),
-                 begins.end());
-    return begins;
+    centres.erase(std::remove_if(centres.begin(), centres.end(), [](float centre) { return std::isnan(centre); }),
+                  centres.end());
+    return centres;
 }
 
 }  // namespace clinch::detail

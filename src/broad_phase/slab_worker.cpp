@@ -31,29 +31,39 @@ void SlabWorker::assign(std::size_t device) {
     if (device == device_) return;
     pairs_.clear();
     made_.clear();
+    forget_room();
     staging_ = Buffer();
     names_ = Buffer();
     names_version_ = 0;
     device_ = device;
 }
 
-// Boxes of members on the device, in their order; on the way they are looked at, if they may have moved.
-const Buffer& SlabWorker::send(Device& device, const SlabTask& task, const std::vector<std::uint32_t>& members) {
-    const std::size_t bytes = members.size() * sizeof(Aabb);
-    device.reserve(staging_, bytes, "boxes");
-    Mapping mapping = device.map_to_write(staging_, bytes);
-    Aabb* const rows = mapping.to<Aabb>();
-    if (task.strays == nullptr) {
-        for (std::size_t i = 0; i < members.size(); ++i) rows[i] = task.boxes[members[i]];
-    } else {
-        bool all_stayed = true;
-        for (std::size_t i = 0; i < members.size(); ++i) {
-            rows[i] = task.boxes[members[i]];
-            all_stayed &= task.deal.look(slab_, members[i], task.boxes[members[i]]);
-        }
-        if (!all_stayed) *task.strays = true;
+Aabb* SlabWorker::room_for(std::size_t members) noexcept {
+    forget_room();
+    if (members == 0) return nullptr;
+    try {
+        Device& device = context_.open(device_);
+        device.reserve(staging_, members * sizeof(Aabb), "boxes");
+        room_ = device.map_to_write(staging_, members * sizeof(Aabb));
+        return room_.to<Aabb>();
+    } catch (...) {
+        no_room_ = std::current_exception();
+        return nullptr;
     }
-    device.written(std::move(mapping));
+}
+
+void SlabWorker::forget_room() noexcept {
+    room_.release();
+    no_room_ = nullptr;
+}
+
+// Boxes of members on the device, in their order: those in the room for them, if there is one.
+const Buffer& SlabWorker::send(Device& device, const SlabTask& task, const std::vector<std::uint32_t>& members) {
+    const bool is_there = room_.to<Aabb>() != nullptr && &members == &task.deal.members(slab_);
+    Aabb* const rows = is_there ? nullptr : room_for(members.size());
+    if (no_room_ != nullptr) std::rethrow_exception(std::exchange(no_room_, nullptr));
+    for (std::size_t i = 0; rows != nullptr && i < members.size(); ++i) rows[i] = task.boxes[members[i]];
+    device.written(std::move(room_));
     return staging_;
 }
 
@@ -83,7 +93,6 @@ void SlabWorker::search(const SlabTask& task, const std::vector<std::uint32_t>& 
     std::unique_ptr<BroadPhaseAlgorithm>& algorithm = made_[&task.row];
     if (!algorithm) algorithm = task.row.make(&device, options_);
     BoxInput input(device, send(device, task, members).handle(), 0, static_cast<std::uint32_t>(members.size()));
-    if (task.strays != nullptr && *task.strays) return;
     if (&members == &task.deal.members(slab_) && !task.filters.any() && task.taker == nullptr)
         name(device, task, input);
     const bool all = task.deal.count() == 1 && members.size() == task.boxes.size();
@@ -130,6 +139,7 @@ void SlabWorker::stream(const SlabTask& task, std::size_t s) {
 
 void SlabWorker::find(const SlabTask& task, std::size_t s) {
     const Stopwatch watch;
+    if (no_room_ != nullptr) std::rethrow_exception(std::exchange(no_room_, nullptr));
     Device& device = context_.open(device_);
     const double built_before = device.report().build_ms;
     pairs_.clear();

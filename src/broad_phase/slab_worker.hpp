@@ -1,9 +1,9 @@
 // The pairs of one slab on one device.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <map>
 #include <memory>
@@ -31,13 +31,10 @@ struct SlabTask {
     const AlgorithmRow& row;
     View<const Aabb> boxes;
     const FilterInput& filters;
-    SlabDeal& deal;
+    const SlabDeal& deal;
     bool counts_only;
     /// As what lists of names may come; the same from all slabs, so that they can be merged as they are.
     std::optional<KeyLayout> keys;
-    /// Not null: boxes may have moved since the deal. Set where one has moved into a slab that it is no member of: then
-    /// pairs are missing, and all is to be done again after another deal. Not where they are only counted.
-    std::atomic<bool>* strays = nullptr;
     const PairTaker* taker = nullptr;  ///< else workers keep their pairs
 };
 
@@ -53,7 +50,10 @@ public:
     /// As its algorithms are to have them.
     BroadPhaseOptions& options() noexcept { return options_; }
 
-    /// Finds the pairs of slab s, or only counts them. Opens the device if need be. Stops early once there are strays.
+    /// Room on the device, which it opens if need be, for the boxes of `members` members: find() searches what was
+    /// written there before. Null without any, or if the device fails: then find() throws what it threw.
+    Aabb* room_for(std::size_t members) noexcept;
+    /// Finds the pairs of slab s, or only counts them.
     void find(const SlabTask& task, std::size_t s);
 
     /// What was found.
@@ -66,6 +66,7 @@ public:
     /// Wall time of the last find(), without that of building kernels and of who took the pairs of a stream.
     double seconds() const noexcept { return seconds_; }
     void forget_pairs() { pairs_.clear(); }
+    void forget_room() noexcept;
 
 private:
     void count(const SlabTask& task, std::size_t s);
@@ -81,6 +82,8 @@ private:
     std::size_t slab_ = 0, names_slab_ = 0;
     std::uint64_t names_version_ = 0;  // of the deal that names_ are of; 0: none
     Buffer staging_, names_;
+    Mapping room_;  // of staging_
+    std::exception_ptr no_room_;
     std::map<const AlgorithmRow*, std::unique_ptr<BroadPhaseAlgorithm>> made_;
     PairList pairs_;  // after `made_`, whose buffers it may map: it ends first
     FindCounts counts_;

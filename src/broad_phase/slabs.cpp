@@ -10,7 +10,7 @@
 namespace clinch::detail {
 namespace {
 
-constexpr std::size_t sample_size = 4096, begins_size = 65536, boxes_a_block = std::size_t{1} << 15;
+constexpr std::size_t sample_size = 4096, centres_size = 65536, boxes_a_block = std::size_t{1} << 15;
 constexpr double slack_widths = 0.25;  // of boxes: bodies that move much farther in a step are few
 
 using Floats = std::vector<float>::iterator;
@@ -27,34 +27,29 @@ void bring_to_places(Floats start, Floats first, Floats last, Places place, Plac
     bring_to_places(start, nth + 1, last, middle + 1, places_end);
 }
 
-// Cuts by which boxes that begin at `begins`, one at least, lie in slabs as `fractions` say.
-std::vector<float> cuts_for(std::vector<float> begins, const std::vector<double>& fractions) {
+// Cuts by which boxes with these `centres`, one at least, lie in slabs as `fractions` say.
+std::vector<float> cuts_for(std::vector<float> centres, const std::vector<double>& fractions) {
     std::vector<std::size_t> places;
     double before = 0.0;
     for (std::size_t s = 0; s + 1 < fractions.size(); ++s) {
         before += fractions[s];
-        places.push_back(static_cast<std::size_t>(std::clamp(before, 0.0, 1.0) * static_cast<double>(begins.size())));
+        places.push_back(static_cast<std::size_t>(std::clamp(before, 0.0, 1.0) * static_cast<double>(centres.size())));
     }
     std::vector<std::size_t> each = places;
     each.erase(std::unique(each.begin(), each.end()), each.end());
-    while (!each.empty() && each.back() >= begins.size()) each.pop_back();
-    bring_to_places(begins.begin(), begins.begin(), begins.end(), each.begin(), each.end());
+    while (!each.empty() && each.back() >= centres.size()) each.pop_back();
+    bring_to_places(centres.begin(), centres.begin(), centres.end(), each.begin(), each.end());
     std::vector<float> cuts;
     cuts.reserve(places.size());
-    for (const std::size_t place : places)  // Nothing begins behind the last: a share of all of them ends behind it.
-        cuts.push_back(place < begins.size()
-                           ? begins[place]
-                           : std::nextafter(*std::max_element(begins.begin(), begins.end()), HUGE_VALF));
+    for (const std::size_t place : places)  // All boxes lie behind the first one, and before one behind the last.
+        cuts.push_back(place == 0 ? -HUGE_VALF : place < centres.size() ? centres[place] : HUGE_VALF);
     return cuts;
 }
 
 Slabs slabs_across(int axis, const std::vector<Aabb>& sample, const std::vector<double>& fractions) {
     Slabs slabs;
     slabs.axis = axis;
-    std::vector<float> begins;
-    begins.reserve(sample.size());
-    for (const Aabb& box : sample) begins.push_back(box.min[axis]);
-    slabs.cuts = cuts_for(std::move(begins), fractions);
+    slabs.cuts = cuts_for(centres_of({sample.data(), sample.size()}, axis, sample.size()), fractions);
     double width = 0.0;
     for (const Aabb& box : sample)
         width += (static_cast<double>(box.max[axis]) - static_cast<double>(box.min[axis])) /
@@ -82,8 +77,8 @@ Slabs choose_slabs(View<const Aabb> boxes, const std::vector<double>& fractions)
         Slabs slabs = slabs_across(axis, sample, fractions);
         if (axis == 0 || slabs.copies < best.copies) best = std::move(slabs);
     }
-    std::vector<float> begins = begins_of(boxes, best.axis, begins_size);
-    if (!begins.empty()) best.cuts = cuts_for(std::move(begins), fractions);
+    std::vector<float> centres = centres_of(boxes, best.axis, centres_size);
+    if (!centres.empty()) best.cuts = cuts_for(std::move(centres), fractions);
     return best;
 }
 
@@ -97,15 +92,26 @@ void each_of(std::size_t block, std::size_t boxes, const What& what) {
 
 }  // namespace
 
-bool SlabDeal::keep(View<const Aabb> boxes) {
-    const std::size_t n = boxes.size(), blocks = (n + boxes_a_block - 1) / boxes_a_block;
-    if (!is_of(n)) return false;
+bool SlabDeal::keep(View<const Aabb> boxes, const std::vector<Aabb*>& rows) {
+    const std::size_t n = boxes.size(), blocks = (n + boxes_a_block - 1) / boxes_a_block, count = members_.size();
+    if (n != spans_.size() || count != slabs_.count()) return false;
     std::vector<std::uint8_t> strays(blocks, 0);
     parallel_for(blocks, blocks > 1, [&](std::size_t block) {
+        std::vector<Aabb*> to(rows);
+        to.resize(count, nullptr);
+        for (std::size_t s = 0; s < count; ++s)
+            if (to[s] != nullptr) to[s] += places_[block * count + s];
         unsigned stray = 0;
-        each_of(block, n, [&](std::size_t i) {
-            const SlabSpan span = spans_[i] = slabs_.span_of(boxes[i]), in = member_of_[i];
+        const Slabs slabs = slabs_;  // none that what is written here may be part of
+        const Aabb* const all = boxes.data();
+        SlabSpan* const spans = spans_.data();
+        const SlabSpan* const member_of = member_of_.data();
+        each_of(block, n, [=, &to, &slabs, &stray](std::size_t i) {
+            const SlabSpan span = slabs.span_of(all[i]), in = member_of[i];
             stray |= static_cast<unsigned>(span.first < in.first) | static_cast<unsigned>(span.last > in.last);
+            spans[i] = span;
+            for (std::size_t s = in.first; s <= in.last; ++s)
+                if (to[s] != nullptr) *to[s]++ = all[i];
         });
         strays[block] = static_cast<std::uint8_t>(stray);
     });

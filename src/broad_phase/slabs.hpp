@@ -35,20 +35,21 @@ struct Slabs {
 
 private:
     SlabSpan span_of(float min, float max) const noexcept {
-        SlabSpan span{0, 0};
+        unsigned first = 0, last = 0;  // not in bytes, which for all a compiler knows may be those of `cuts`
         for (const float cut : cuts) {
-            span.first = static_cast<std::uint8_t>(span.first + (min >= cut ? 1 : 0));
-            span.last = static_cast<std::uint8_t>(span.last + (max >= cut ? 1 : 0));
+            first += min >= cut ? 1U : 0U;
+            last += max >= cut ? 1U : 0U;
         }
-        span.last = std::max(span.first, span.last);
-        return span;
+        return {static_cast<std::uint8_t>(first), static_cast<std::uint8_t>(std::max(first, last))};
     }
 };
 
-/// Slabs in which boxes begin in proportion to `fractions` (which add up to 1; at most Slabs::most of them), across the
-/// axis on which the fewest boxes reach over a cut. The axis by a sample of 4,096 boxes, the cuts by where 65,536 of
-/// them begin (all, where they are not more): a share is off by 0.2 % of all boxes (one deviation) at most. Always the
-/// same samples. Of a million boxes about a millisecond, twice that for many slabs.
+/// Slabs with centres of boxes in proportion to `fractions` (which add up to 1; at most Slabs::most of them), across
+/// the axis on which the fewest boxes reach over a cut; nothing is in a first or last one of which the fraction is 0.
+/// By centres, so that both sides of a cut have as many of the boxes that reach over it. The axis by a sample of 4,096
+/// boxes, the cuts by the centres of 65,536 of them (all, where they are not more): a share is off by 0.2 % of all
+/// boxes (one deviation) at most. Always the same samples. Of a million boxes about a millisecond, twice that for many
+/// slabs.
 Slabs choose_slabs(View<const Aabb> boxes, const std::vector<double>& fractions);
 
 /// The boxes of each slab. Members stay the same from call to call while they can, so that what an algorithm has made
@@ -58,17 +59,9 @@ public:
     /// Two passes over the boxes on the host's threads.
     void deal(View<const Aabb> boxes, const Slabs& slabs);
     /// For boxes that moved since: keeps cuts and members, in one pass. False if it cannot: there are more or fewer
-    /// boxes, or one reaches into a slab that it is no member of.
-    bool keep(View<const Aabb> boxes);
-    /// Whether look() may take the place of keep(): there are as many boxes as were dealt.
-    bool is_of(std::size_t boxes) const noexcept { return boxes == spans_.size() && members_.size() == slabs_.count(); }
-    /// keep(), box by box: how `box`, a member of slab s, lies now. False if it reaches into a slab that it is no
-    /// member of. After all members of all slabs were looked at, keep() would change nothing. Slabs side by side.
-    bool look(std::size_t s, std::uint32_t number, const Aabb& box) noexcept {
-        const SlabSpan span = slabs_.span_of(box), in = member_of_[number];
-        if (in.first == s) spans_[number] = span;  // by one slab alone
-        return span.first >= in.first && span.last <= in.last;
-    }
+    /// boxes, or one reaches into a slab that it is no member of. On the way members of slab s go to rows[s], if there
+    /// is such a row and it is not null, in their order; what is there if it cannot is of no use.
+    bool keep(View<const Aabb> boxes, const std::vector<Aabb*>& rows = {});
     const Slabs& slabs() const noexcept { return slabs_; }
     /// Another one after each deal(), none of them 0.
     std::uint64_t version() const noexcept { return version_; }
@@ -90,7 +83,7 @@ private:
     std::uint64_t version_ = 0;
     std::vector<SlabSpan> spans_, member_of_;
     std::vector<std::vector<std::uint32_t>> members_;
-    std::vector<std::size_t> places_;  // of each block's members in each slab
+    std::vector<std::size_t> places_;  // of each block's first member in each slab
 };
 
 }  // namespace clinch::detail

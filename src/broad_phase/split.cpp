@@ -20,9 +20,6 @@ namespace {
 // Less than this, by the boxes that several devices have, does not pay.
 constexpr double least_speed_up = 1.3;
 
-// Boxes that stray do so again soon: they move.
-constexpr int calls_after_strays = 16;
-
 std::vector<double> guesses_of(const Context::Impl& context) {
     std::vector<double> guesses;
     for (const DeviceInfo& info : context.infos) guesses.push_back(guessed_speed(info));
@@ -117,18 +114,29 @@ bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& cr
     return true;
 }
 
-// The slabs for this call: those of the last one if they still have the right shares. They are right if all boxes stay
-// in those that they are members of. Workers see that when they gather their boxes, which saves a pass over all, but
-// then some may have worked for nothing; hence not soon after boxes have strayed.
-BroadSplit::Members BroadSplit::members_for(View<const Aabb> boxes, const std::vector<std::size_t>& crew,
-                                            bool look_first) {
-    if (crew == dealt_to_ && SteadyShares::may_stay(dealt_, fractions_of(crew)) && deal_.is_of(boxes.size())) {
-        if (!look_first && calls_looked_first_ == 0) return Members::ToBeSeen;
-        calls_looked_first_ = std::max(0, calls_looked_first_ - 1);
-        if (deal_.keep(boxes)) return Members::Right;
-        calls_looked_first_ = calls_after_strays;
+// The slabs for this call, and workers for them: those of the last one if they still have the right shares and all
+// boxes stay in those that they are members of. With `send` the boxes are in the workers' room. False if it does not
+// pay.
+bool BroadSplit::settle(View<const Aabb> boxes, const std::vector<std::size_t>& crew, bool send) {
+    prepare(crew);
+    const bool same = crew == dealt_to_ && SteadyShares::may_stay(dealt_, fractions_of(crew));
+    if (same && keep(boxes, send)) return true;
+    if (!deal(boxes, crew)) return false;
+    if (send) keep(boxes, true);
+    return true;
+}
+
+// Whether all boxes stay in slabs that they are members of; with `send` the host's threads put them, in the same pass,
+// where the devices find them. One pass for all: each device alone would read nearly all memory that boxes are in.
+bool BroadSplit::keep(View<const Aabb> boxes, bool send) {
+    std::vector<Aabb*> rows(workers_.size(), nullptr);
+    if (send) {
+        const auto make_room = [&](std::size_t s) { rows[s] = workers_[s]->room_for(deal_.members(s).size()); };
+        const std::vector<std::exception_ptr> not_begun = run_crew(rows.size(), make_room);
+        for (std::size_t s = 0; s < rows.size(); ++s)
+            if (not_begun[s] != nullptr) make_room(s);  // there was no thread to be had
     }
-    return deal(boxes, crew) ? Members::Right : Members::NotWorth;
+    return deal_.keep(boxes, rows);
 }
 
 void BroadSplit::start_call() {
@@ -142,20 +150,9 @@ bool BroadSplit::find(const AlgorithmRow& row, BoxInput& boxes, const FilterInpu
     start_call();
     const std::vector<std::size_t> crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
-    const Members members = members_for(on_host, crew, pairs.counts_only());
-    if (members == Members::NotWorth) return false;
-    prepare(crew);
-    std::atomic<bool> strays{false};
-    SlabTask task{row, on_host, filters, deal_, pairs.counts_only(), keys_for(boxes.count()), nullptr};
-    if (members == Members::ToBeSeen) task.strays = &strays;
+    if (!settle(on_host, crew, !pairs.counts_only())) return false;
+    const SlabTask task{row, on_host, filters, deal_, pairs.counts_only(), keys_for(boxes.count())};
     run(task);
-    if (strays) {
-        calls_looked_first_ = calls_after_strays;
-        forget_pairs();
-        if (!deal(on_host, crew)) return false;
-        task.strays = nullptr;
-        run(task);
-    }
     measure();
     gather(task.counts_only, pairs, counts);
     check_limit(pairs.size(), options_);
@@ -267,8 +264,7 @@ void BroadSplit::throw_limit(const SlabTask& task) {
         worker->forget_pairs();
         worker->options().max_pairs = std::numeric_limits<std::uint64_t>::max();
     }
-    if (task.strays != nullptr && !deal_.keep(task.boxes)) deal_.deal(task.boxes, Slabs(deal_.slabs()));
-    const SlabTask counting{task.row, task.boxes, task.filters, task.deal, true, std::nullopt, nullptr};
+    const SlabTask counting{task.row, task.boxes, task.filters, task.deal, true, std::nullopt};
     if (task.taker != nullptr)
         run_in_place(counting);
     else
@@ -295,17 +291,16 @@ void BroadSplit::begin_stream(const AlgorithmRow& row, BoxInput& boxes, std::vec
     start_call();
     if (crew.empty()) crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
-    if (members_for(on_host, crew, true) == Members::NotWorth) {
-        crew.resize(1);
-        members_for(on_host, crew, true);
-    }
-    prepare(crew);
+    if (settle(on_host, crew, false)) return;
+    crew.resize(1);
+    settle(on_host, crew, false);
 }
 
 std::uint64_t BroadSplit::stream(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters,
                                  const PairTaker& taker, FindCounts& counts) {
     const View<const Aabb> on_host = boxes.on_host();
-    const SlabTask task{row, on_host, filters, deal_, false, std::nullopt, nullptr, &taker};
+    const SlabTask task{row, on_host, filters, deal_, false, std::nullopt, &taker};
+    keep(on_host, true);
     run_in_place(task);
     measure();
     add_counts(counts);

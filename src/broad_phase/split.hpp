@@ -52,13 +52,12 @@ public:
     void forget_pairs();
 
 private:
-    // Of the slabs for a call. ToBeSeen: workers tell whether they are right.
-    enum class Members { NotWorth, Right, ToBeSeen };
     void start_call();
     std::vector<std::size_t> crew_for(const AlgorithmRow& row, std::uint64_t count) const;
     std::vector<double> fractions_of(const std::vector<std::size_t>& crew) const;
     bool deal(View<const Aabb> boxes, const std::vector<std::size_t>& crew);
-    Members members_for(View<const Aabb> boxes, const std::vector<std::size_t>& crew, bool look_first);
+    bool settle(View<const Aabb> boxes, const std::vector<std::size_t>& crew, bool send);
+    bool keep(View<const Aabb> boxes, bool send);
     void prepare(const std::vector<std::size_t>& crew);
     std::optional<KeyLayout> keys_for(std::uint64_t boxes) const;
     void run(const SlabTask& task);
@@ -78,7 +77,6 @@ private:
     SlabDeal deal_;
     std::vector<std::size_t> dealt_to_;                 // who has which slab of it
     std::vector<double> dealt_;                         // the shares it was made for
-    int calls_looked_first_ = 0;                        // to come, that look for strays before all else
     std::vector<std::unique_ptr<SlabWorker>> workers_;  // of each slab
     std::vector<std::string> warnings_;
 };

@@ -199,8 +199,7 @@ TEST_CASE("boxes move from call to call, within their slabs and out of them: the
         std::vector<Aabb> boxes = scenes::make_boxes("uniform", 800, 18);
         for (int call = 0; call < 30; ++call) {
             INFO(name << ", call " << call);
-            // All move a little, or one far; after a long rest, when workers look for strays themselves, and soon
-            // again.
+            // All move a little, or one far; after a long rest, and soon again.
             const bool one = call == 23 || call == 26, all = call == 2 || call == 4 || call == 5;
             for (std::size_t k = 0; k < (one ? 1 : all ? boxes.size() : 0); ++k) {
                 Aabb& box = boxes[one ? random.below(boxes.size()) : k];
