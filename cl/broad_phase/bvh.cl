@@ -268,6 +268,28 @@ inline BvhBox box_in(global const float* block, uint l) {
     return b;
 }
 
+// Pairs are wanted whose overlap begins on an axis in [low, high): of a slab of space, whose other pairs are another
+// device's.
+typedef struct {
+    uint axis;
+    float low, high;
+    bool all;  // those of the block in search, whatever it meets
+} Wanted;
+
+inline Wanted wanted_of(uint axis, float low, float high, const BvhBox* around) {
+    float first = axis == 0 ? around->min_x : axis == 1 ? around->min_y : around->min_z;
+    float last = axis == 0 ? around->max_x : axis == 1 ? around->max_y : around->max_z;
+    Wanted w = {axis, low, high, first >= low && last < high};
+    return w;
+}
+
+// Of LANES boxes that begin at `begins` on the axis, those whose pairs with one that begins at `begin` are wanted, as
+// bits.
+inline uint wanted_lanes(const Wanted* w, floatN begins, float begin) {
+    floatN both = fmax(begins, (floatN)begin);
+    return lane_bits(as_mask((both >= (floatN)w->low) & (both < (floatN)w->high)));
+}
+
 // Of LANES boxes of a block, those that overlap *b, as bits.
 inline uint overlapping_lanes(global const float* p, const BvhBox* b) {
     return lane_bits(as_mask((load_lanes(0, p) <= (floatN)b->max_x) & (load_lanes(0, p + WIDTH) <= (floatN)b->max_y) &
@@ -340,7 +362,8 @@ inline void find_hits(const Candidates* c, const BvhBox* box, uint row, uint fro
 }
 
 // Pairs of the boxes of block q with the candidates; forgets those.
-inline void test_candidates(global const float* tree, global const uint* order, uint q, Candidates* c, PairSink* sink) {
+inline void test_candidates(global const float* tree, global const uint* order, uint q, const Wanted* wanted, Candidates* c,
+                            PairSink* sink) {
     global const float* block = tree + q * (ulong)BLOCK;
     const uint vectors = (c->count + LANES - 1) / LANES;
     store_floats((floatN)(INFINITY), 0, c->columns + c->count);  // behind the last: no box
@@ -352,7 +375,10 @@ inline void test_candidates(global const float* tree, global const uint* order, 
     }
     for (uint i = 0; i < h.count; ++i) {
         uint v = h.row_and_vector[i] & 255, l = h.row_and_vector[i] >> 8;
-        sink_put_lanes(sink, c->ids + v * LANES, h.bits[i], order[q * WIDTH + l]);
+        uint bits = h.bits[i];
+        if (!wanted->all)
+            bits &= wanted_lanes(wanted, load_lanes(v, c->columns + wanted->axis * CANDIDATES), block[wanted->axis * WIDTH + l]);
+        sink_put_lanes(sink, c->ids + v * LANES, bits, order[q * WIDTH + l]);
     }
     sink->counts.tests += WIDTH * c->count;
     c->count = 0;
@@ -361,8 +387,9 @@ inline void test_candidates(global const float* tree, global const uint* order, 
 
 // Block j of the other tree against the box around block q.
 inline void visit_block(global const float* tree, global const uint* order, uint q, global const float* other,
-                        global const uint* other_order, uint j, const BvhBox* box, Candidates* c, PairSink* sink) {
-    if (c->count > MOST_CANDIDATES - WIDTH) test_candidates(tree, order, q, c, sink);
+                        global const uint* other_order, uint j, const BvhBox* box, const Wanted* wanted, Candidates* c,
+                        PairSink* sink) {
+    if (c->count > MOST_CANDIDATES - WIDTH) test_candidates(tree, order, q, wanted, c, sink);
     for (uint s = 0; s < STEPS; ++s) {
         global const float* p = other + j * (ulong)BLOCK + s * LANES;
         uint bits = overlapping_lanes(p, box);
@@ -374,7 +401,7 @@ inline void visit_block(global const float* tree, global const uint* order, uint
 // Pairs of the boxes `rows` of block a of one tree with the boxes `columns` of block b of another. If they are `own`,
 // one and the same block: of those behind the row only.
 inline void test_rows(global const float* tree, global const uint* order, uint a, uint rows, global const float* other,
-                      global const uint* other_order, uint b, uint columns, bool own, PairSink* sink) {
+                      global const uint* other_order, uint b, uint columns, bool own, const Wanted* wanted, PairSink* sink) {
     global const float* block = tree + a * (ulong)BLOCK;
     sink->counts.tests += WIDTH * popcount(rows);
     for (uint s = 0; s < STEPS; ++s) {
@@ -390,6 +417,8 @@ inline void test_rows(global const float* tree, global const uint* order, uint a
                               (max_x >= (floatN)box.min_x) & (max_y >= (floatN)box.min_y) & (max_z >= (floatN)box.min_z));
             uint hits = lane_bits(m) & wanted;
             if (own) hits &= (0xfffffffeu << l) >> (s * LANES);
+            if (!wanted->all)
+                hits &= wanted_lanes(wanted, load_lanes(0, p + wanted->axis * WIDTH), block[wanted->axis * WIDTH + l]);
             if (hits != 0) sink_put_lanes(sink, other_order + b * WIDTH + s * LANES, hits, order[a * WIDTH + l]);
         }
     }
@@ -398,15 +427,15 @@ inline void test_rows(global const float* tree, global const uint* order, uint a
 // Block q against block j of the other tree; `box` is around q.
 inline void visit_block(global const float* tree, global const uint* order, uint q, global const float* other,
                         constant BvhLevels* other_levels, global const uint* other_order, uint j, const BvhBox* box, bool own,
-                        PairSink* sink) {
+                        const Wanted* wanted, PairSink* sink) {
     BvhBox other_box = box_in(other + (other_levels->first[1] + j / WIDTH) * (ulong)BLOCK, j % WIDTH);
     uint rows = overlapping(tree + q * (ulong)BLOCK, &other_box);
     uint columns = overlapping(other + j * (ulong)BLOCK, box);
     sink->counts.tests += 2 * WIDTH;
     if (popcount(rows) <= popcount(columns))
-        test_rows(tree, order, q, rows, other, other_order, j, columns, own, sink);
+        test_rows(tree, order, q, rows, other, other_order, j, columns, own, wanted, sink);
     else
-        test_rows(other, other_order, j, columns, tree, order, q, rows, own, sink);
+        test_rows(other, other_order, j, columns, tree, order, q, rows, own, wanted, sink);
 }
 #endif
 
@@ -428,8 +457,9 @@ inline uint nodes_to_visit(global const float* tree, constant BvhLevels* levels,
 // Block q against the blocks [from, last] of level 0 of the other tree. If that is the `same`, from >= q.
 inline void search(global const float* tree, constant BvhLevels* levels, global const uint* order, uint q,
                    global const float* other, constant BvhLevels* other_levels, global const uint* other_order, bool same,
-                   uint from, uint last, PairSink* sink) {
+                   uint from, uint last, uint axis, float low, float high, PairSink* sink) {
     BvhBox box = box_in(tree + (levels->first[1] + q / WIDTH) * (ulong)BLOCK, q % WIDTH);
+    Wanted wanted = wanted_of(axis, low, high, &box);
 #if LANES > 1
     Candidates candidates;
     candidates.count = 0;
@@ -460,13 +490,13 @@ inline void search(global const float* tree, constant BvhLevels* levels, global 
             continue;
         }
 #if LANES > 1
-        visit_block(tree, order, q, other, other_order, node, &box, &candidates, sink);
+        visit_block(tree, order, q, other, other_order, node, &box, &wanted, &candidates, sink);
 #else
-        visit_block(tree, order, q, other, other_levels, other_order, node, &box, same && node == q, sink);
+        visit_block(tree, order, q, other, other_levels, other_order, node, &box, same && node == q, &wanted, sink);
 #endif
     }
 #if LANES > 1
-    test_candidates(tree, order, q, &candidates, sink);
+    test_candidates(tree, order, q, &wanted, &candidates, sink);
 #endif
 }
 
@@ -474,7 +504,7 @@ inline void search(global const float* tree, constant BvhLevels* levels, global 
 // the other's blocks: task = window * blocks + block.
 kernel void bvh_search(global const float* restrict tree, constant BvhLevels* levels, global const uint* restrict order,
                        global const float* restrict other, constant BvhLevels* other_levels, global const uint* restrict other_order,
-                       uint same, SINK_PARAMS) {
+                       uint same, uint axis, float low, float high, SINK_PARAMS) {
     PairSink sink = sink_begin(SINK_ARGS);
     for (uint task = sink_task(&sink); task < sink.task_end; task = sink_task(&sink)) {
 #if WINDOW
@@ -484,7 +514,7 @@ kernel void bvh_search(global const float* restrict tree, constant BvhLevels* le
         uint q = task, from = 0, last = other_levels->blocks - 1;
 #endif
         if (same) from = max(from, q);
-        if (from <= last) search(tree, levels, order, q, other, other_levels, other_order, same != 0, from, last, &sink);
+        if (from <= last) search(tree, levels, order, q, other, other_levels, other_order, same != 0, from, last, axis, low, high, &sink);
     }
     sink_end(&sink);
 }

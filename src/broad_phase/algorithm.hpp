@@ -22,6 +22,7 @@ struct FindCounts {
     std::uint64_t boxes_inside = 0;  ///< changed boxes that stayed within their fattened box
     double download_ms = 0.0;        ///< spent making pairs readable on the host
     bool named = false;              ///< pairs are of names, see BoxInput::name
+    bool in_range = false;           ///< all pairs are in BoxInput::wanted()
     bool invalid_boxes = false;      ///< it met boxes that are no boxes; which, the caller finds out
 };
 

@@ -21,7 +21,7 @@ public:
 
 private:
     std::uint32_t window(const BvhTree& tree) const;
-    SinkLaunch search(const BvhTree& tree, const BvhTree& other, const FilterInput& filters);
+    SinkLaunch search(const BvhTree& tree, const BvhTree& other, const FilterInput& filters, const BeginRange& wanted);
 
     Device& device_;
     BvhForest trees_;
@@ -43,7 +43,9 @@ std::uint32_t Bvh::window(const BvhTree& tree) const {
 }
 
 // The blocks of a tree against those of the other, or if that is the same one, each two of them once.
-SinkLaunch Bvh::search(const BvhTree& tree, const BvhTree& other, const FilterInput& filters) {
+SinkLaunch Bvh::search(const BvhTree& tree, const BvhTree& other, const FilterInput& filters,
+                       const BeginRange& wanted) {
+    constexpr std::uint32_t own_parameters = 10;
     const std::uint32_t width = window(tree);
     const bool same = &tree == &other;
     Kernel& kernel = search_kernels_[same ? 0 : 1][filters.any() ? 1 : 0];
@@ -52,18 +54,19 @@ SinkLaunch Bvh::search(const BvhTree& tree, const BvhTree& other, const FilterIn
         if (width > 0) defines += " -DWINDOW=" + std::to_string(width);
         kernel = device_.kernel("broad_phase/bvh", "bvh_search", defines);
     }
-    kernel.args(tree.nodes(), tree.levels(), tree.names(), other.nodes(), other.levels(), other.names(),
-                same ? 1u : 0u);
-    if (width == 0) return {&kernel, 7, tree.blocks()};
+    kernel.args(tree.nodes(), tree.levels(), tree.names(), other.nodes(), other.levels(), other.names(), same ? 1u : 0u,
+                wanted.axis, wanted.low, wanted.high);
+    if (width == 0) return {&kernel, own_parameters, tree.blocks()};
     const std::uint64_t tasks = std::uint64_t{tree.blocks()} * ((other.blocks() - 1) / width + 1);
     if (tasks > std::numeric_limits<std::uint32_t>::max())
         throw Error(ErrorCode::LimitExceeded, "bvh cannot search so many boxes on '" + device_.info().name +
                                                   "', whose driver has the quirk loops-end-early; brute can");
-    return {&kernel, 7, static_cast<std::uint32_t>(tasks), 1};
+    return {&kernel, own_parameters, static_cast<std::uint32_t>(tasks), 1};
 }
 
 void Bvh::find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, FindCounts& counts) {
     const std::uint32_t n = boxes.count();
+    counts.in_range = true;
     if (n < 2) {
         counts.invalid_boxes = n == 1;  // one box is looked at on the host
         return;
@@ -76,11 +79,12 @@ void Bvh::find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, Fin
     // With two trees no pair comes up of which neither can move: without groups and masks there is nothing to filter.
     const bool all_pass = trees_.split() && filters.columns.group == nullptr && filters.columns.mask == nullptr;
     const FilterInput applied = all_pass ? FilterInput{} : filters;
-    std::vector<SinkLaunch> launches{search(*moving, *moving, applied)};
+    std::vector<SinkLaunch> launches{search(*moving, *moving, applied, boxes.wanted())};
     if (const BvhTree* const still = trees_.still(); still != nullptr) {
         // From the fuller tree, whose blocks are the smaller: those of a sparse one reach over many boxes.
         const bool from_still = still->blocks() >= moving->blocks();
-        launches.push_back(from_still ? search(*still, *moving, applied) : search(*moving, *still, applied));
+        launches.push_back(from_still ? search(*still, *moving, applied, boxes.wanted())
+                                      : search(*moving, *still, applied, boxes.wanted()));
     }
     const std::uint64_t tests_before = counts.box_tests;
     counts.named = boxes.names() != nullptr;

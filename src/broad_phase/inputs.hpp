@@ -1,6 +1,7 @@
 // What a broad-phase algorithm works on, on the host or on a device, moved only when asked for there.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -10,6 +11,12 @@
 #include "src/device/device.hpp"
 
 namespace clinch::detail {
+
+/// Where the overlap of a pair begins on an axis: in [low, high).
+struct BeginRange {
+    std::uint32_t axis = 0;
+    float low = -HUGE_VALF, high = HUGE_VALF;
+};
 
 /// The boxes of one call. Where they are not yet is filled in on first use and kept for the call.
 class BoxInput {
@@ -36,6 +43,10 @@ public:
         names_version_ = version;
         bodies_ = bodies;
     }
+    /// Only pairs whose overlap begins in this range are wanted. An algorithm may find others all the same; one that
+    /// does not sets FindCounts::in_range.
+    void want(const BeginRange& range) noexcept { range_ = range; }
+    const BeginRange& wanted() const noexcept { return range_; }
     /// Null: boxes have their places as names.
     const Buffer* names() const noexcept { return names_; }
     std::uint64_t names_version() const noexcept { return names_version_; }
@@ -52,6 +63,7 @@ private:
     const Buffer* names_ = nullptr;
     std::uint64_t first_ = 0, names_version_ = 0;
     std::uint32_t count_ = 0, bodies_ = 0;
+    BeginRange range_;
 };
 
 /// The filters of one call. `version` (if not 0) tells that they are those of the last call with it.

@@ -48,7 +48,7 @@ public:
         std::size_t pairs = 0;
         for (std::size_t s = 0; s < part.runs.size(); ++s) {
             pairs += static_cast<std::size_t>(part.runs[s].end - part.runs[s].at);
-            pairs -= count_of_others(s, part);
+            if (!lists_[s].in_range) pairs -= count_of_others(s, part);
         }
         return pairs;
     }
@@ -115,7 +115,7 @@ private:
             const std::uint32_t key = lists_[s].named ? a : run.place++;
             for (; run.at < run.end && run.at->a == key; ++run.at) {
                 const std::uint32_t b = name_of(s, run.at->b);
-                if (deal_.owner(a, b) == s) *out++ = {a, b};
+                if (lists_[s].in_range || deal_.owner(a, b) == s) *out++ = {a, b};
             }
         }
         std::sort(row, out, [](const Pair& p, const Pair& q) { return p.b < q.b; });
@@ -173,7 +173,7 @@ void each_pair(const SlabDeal& deal, const SlabLists& lists, const Stretch& stre
     for (std::size_t i = stretch.first; i < stretch.end; ++i) {
         const Pair pair = list.pairs[i];
         const std::uint32_t a = list.named ? pair.a : members[pair.a], b = list.named ? pair.b : members[pair.b];
-        if (deal.owner(a, b) == stretch.slab) take(Pair{a, b});
+        if (list.in_range || deal.owner(a, b) == stretch.slab) take(Pair{a, b});
     }
 }
 
@@ -217,9 +217,12 @@ bool are_keys(const SlabLists& lists) {
 void merge_slabs(const SlabDeal& deal, const SlabLists& lists, bool sorted, PairList& out) {
     if (sorted && are_keys(lists)) {
         std::vector<PairKeys> keys;
-        for (const SlabList& list : lists)
+        bool disjoint = true;
+        for (const SlabList& list : lists) {
+            disjoint = disjoint && list.in_range;
             if (list.keys.any()) keys.push_back(list.keys);
-        merge_keys(keys, out);
+        }
+        merge_keys(keys, disjoint, out);
         return;
     }
     SlabLists all = lists;
@@ -227,7 +230,7 @@ void merge_slabs(const SlabDeal& deal, const SlabLists& lists, bool sorted, Pair
     std::uint64_t pairs = 0;
     for (std::size_t s = 0; s < lists.size(); ++s) {
         if (lists[s].keys.any()) {  // beside those of another kind of device
-            merge_keys({lists[s].keys}, unpacked[s]);
+            merge_keys({lists[s].keys}, true, unpacked[s]);
             all[s].pairs = unpacked[s].view();
         }
         pairs += all[s].pairs.size();

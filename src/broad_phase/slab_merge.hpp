@@ -16,6 +16,7 @@ namespace clinch::detail {
 struct SlabList {
     View<const Pair> pairs;
     bool named = false;
+    bool in_range = false;  ///< only such as belong to slab s
     PairKeys keys;
 };
 using SlabLists = std::vector<SlabList>;

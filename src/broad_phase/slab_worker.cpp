@@ -95,17 +95,19 @@ void SlabWorker::search(const SlabTask& task, const std::vector<std::uint32_t>& 
     BoxInput input(device, send(device, task, members).handle(), 0, static_cast<std::uint32_t>(members.size()));
     if (&members == &task.deal.members(slab_) && !task.filters.any() && task.taker == nullptr)
         name(device, task, input);
+    const Slabs& slabs = task.deal.slabs();
+    input.want({static_cast<std::uint32_t>(slabs.axis), slabs.low(slab_), slabs.high(slab_)});
     const bool all = task.deal.count() == 1 && members.size() == task.boxes.size();
     algorithm->find(input, all ? task.filters : filters_of(task.filters, members), pairs_, counts_);
     // One box alone is none that an algorithm looks at: the host does.
     counts_.invalid_boxes = counts_.invalid_boxes || members.size() == 1;
 }
 
-// Pairs of two boxes that begin before the slab are counted there, too.
+// Pairs of two boxes that begin before the slab are counted there, too, unless the algorithm leaves them out.
 void SlabWorker::count(const SlabTask& task, std::size_t s) {
     search(task, boxes_in(task.deal, s, [s](SlabSpan span) { return span.first <= s && s <= span.last; }));
     found_ = counted_ = pairs_.size();
-    if (s == 0) return;
+    if (s == 0 || counts_.in_range) return;
     const FindCounts counts = counts_;
     pairs_.restart();
     search(task, boxes_in(task.deal, s, [s](SlabSpan span) { return span.first < s && s <= span.last; }));
@@ -123,7 +125,8 @@ void SlabWorker::stream(const SlabTask& task, std::size_t s) {
         if (!all) {
             owned_.clear();
             for (const Pair& pair : pairs)
-                if (const Pair named{members[pair.a], members[pair.b]}; task.deal.owner(named.a, named.b) == s)
+                if (const Pair named{members[pair.a], members[pair.b]};
+                    counts_.in_range || task.deal.owner(named.a, named.b) == s)
                     owned_.push_back(named);
             pairs = {owned_.data(), owned_.size()};
         }

@@ -57,7 +57,7 @@ public:
     void find(const SlabTask& task, std::size_t s);
 
     /// What was found.
-    SlabList pairs() const noexcept { return {pairs_.view(), counts_.named, pairs_.keys()}; }
+    SlabList pairs() const noexcept { return {pairs_.view(), counts_.named, counts_.in_range, pairs_.keys()}; }
     /// How many pairs were found in the slab; of a stream, those that belong to it.
     std::uint64_t found() const noexcept { return found_; }
     /// How many of them belong to it; only where they were counted.

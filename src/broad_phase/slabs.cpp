@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "src/broad_phase/box_sample.hpp"
@@ -41,8 +42,12 @@ std::vector<float> cuts_for(std::vector<float> centres, const std::vector<double
     bring_to_places(centres.begin(), centres.begin(), centres.end(), each.begin(), each.end());
     std::vector<float> cuts;
     cuts.reserve(places.size());
-    for (const std::size_t place : places)  // All boxes lie behind the first one, and before one behind the last.
-        cuts.push_back(place == 0 ? -HUGE_VALF : place < centres.size() ? centres[place] : HUGE_VALF);
+    for (const std::size_t place : places) {
+        // All boxes lie behind the first place, and before one behind the last.
+        const float cut = place == 0 ? -HUGE_VALF : place < centres.size() ? centres[place] : HUGE_VALF;
+        constexpr float least = std::numeric_limits<float>::min();
+        cuts.push_back(std::fabs(cut) < least ? least : cut);
+    }
     return cuts;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -22,10 +23,13 @@ struct SlabSpan {
 struct Slabs {
     static constexpr std::size_t most = 255;
     int axis = 0;
-    std::vector<float> cuts;  ///< ascending
+    std::vector<float> cuts;  ///< ascending; none between 0 and the least normal number, which devices may take for 0
     float slack = 0.0f;       ///< boxes this near to a slab are its members, too: they may be in it next time
     double copies = 0.0;      ///< members that slabs have beyond one each, a box, as a sample has it
     std::size_t count() const noexcept { return cuts.size() + 1; }
+    /// Where the overlaps of pairs that belong to slab s begin: in [low, high).
+    float low(std::size_t s) const noexcept { return s == 0 ? -HUGE_VALF : cuts[s - 1]; }
+    float high(std::size_t s) const noexcept { return s == cuts.size() ? HUGE_VALF : cuts[s]; }
     /// Of a box that is no box on the axis: the slab where it is met, and found to be none.
     SlabSpan span_of(const Aabb& box) const noexcept { return span_of(box.min[axis], box.max[axis]); }
     /// Those that it is made a member of.

@@ -30,14 +30,14 @@ struct Packed {
     PairKeys view() const { return {layout, keys, starts}; }
 };
 
-std::vector<Pair> merged(const std::vector<std::set<Pair>>& lists, const KeyLayout& layout) {
+std::vector<Pair> merged(const std::vector<std::set<Pair>>& lists, const KeyLayout& layout, bool disjoint) {
     std::vector<Packed> packed;
     for (const auto& list : lists) packed.emplace_back(list, layout);
     std::vector<PairKeys> views;
     for (const Packed& list : packed) views.push_back(list.view());
     PairList out;
     out.append({{7, 7}});  // what is there stays
-    merge_keys(views, out);
+    merge_keys(views, disjoint, out);
     const View<const Pair> pairs = out.view();
     REQUIRE(pairs[0] == Pair{7, 7});
     return {pairs.begin() + 1, pairs.end()};
@@ -62,7 +62,7 @@ std::vector<std::set<Pair>> deal(const std::set<Pair>& pairs, std::size_t count,
 
 using Run = std::vector<std::uint32_t>;
 
-// Two lists of one bucket become one, in either order.
+// Two lists of one bucket become one, in either order; where they have no key in common, also as such.
 void check_union(const Run& one, const Run& other) {
     constexpr KeyLayout layout{1, 12, 20};
     const auto count = [](const Run& run) { return static_cast<std::uint32_t>(run.size()); };
@@ -72,21 +72,28 @@ void check_union(const Run& one, const Run& other) {
     std::set_union(one.begin(), one.end(), other.begin(), other.end(), std::back_inserter(keys));
     std::vector<Pair> expected;
     for (const std::uint32_t key : keys) expected.push_back({key >> layout.b_bits, key & 0xfffffu});
-    for (const auto& lists : {std::vector<PairKeys>{p, q}, {q, p}, {p, q, p}}) {
-        PairList out;
-        merge_keys(lists, out);
-        const View<const Pair> found = out.view();
-        CHECK(std::equal(found.begin(), found.end(), expected.begin(), expected.end()));
-    }
+    const bool disjoint = keys.size() == one.size() + other.size();
+    for (const auto& lists : {std::vector<PairKeys>{p, q}, {q, p}, {p, q, p}})
+        for (const bool as_such : {false, true}) {
+            if (as_such && (!disjoint || lists.size() > 2)) continue;
+            for (const std::size_t before : {0u, 1u}) {  // pairs that begin on a multiple of 16 bytes, or not
+                PairList out;
+                if (before == 1) out.append({{0, 0}});
+                merge_keys(lists, as_such, out);
+                const View<const Pair> found = out.view();
+                CHECK(std::equal(found.begin() + before, found.end(), expected.begin(), expected.end()));
+            }
+        }
 }
 
-// Keys of the one run and of the other take turns of `turn`; every `common`th of the other is one of the first, too.
+// Keys of the one run and of the other take turns of `turn`; every `common`th of the other is one of the first, too (0:
+// none).
 std::pair<Run, Run> in_turns(std::size_t keys, std::uint32_t turn, std::uint32_t common) {
     std::pair<Run, Run> runs;
     for (std::uint32_t k = 0; runs.first.size() + runs.second.size() < keys; ++k) {
         const bool is_first = k / turn % 2 == 0;
         (is_first ? runs.first : runs.second).push_back(k * 977);
-        if (!is_first && k % common == 0) runs.first.push_back(k * 977);
+        if (!is_first && common != 0 && k % common == 0) runs.first.push_back(k * 977);
     }
     return runs;
 }
@@ -108,11 +115,17 @@ TEST_CASE("lists of keys, with pairs that several of them have, become one", "[h
                 for (std::size_t i = 0; i < count; ++i)
                     pairs.insert({static_cast<std::uint32_t>((first + random.below(rows)) % bodies),
                                   static_cast<std::uint32_t>(random.below(std::uint64_t{1} << layout.b_bits))});
-                for (const std::size_t several : {1u, 2u, 3u, 40u}) {
+                for (const std::size_t several : {1u, 2u, 3u, 40u, 4000000u, 4000001u}) {
                     INFO(pairs.size() << " pairs in " << lists << " lists, " << layout.buckets << " buckets of "
                                       << layout.shift << " bits, several " << several);
-                    const std::vector<Pair> found = merged(deal(pairs, lists, several, random), layout);
-                    CHECK(std::equal(found.begin(), found.end(), pairs.begin(), pairs.end()));
+                    const std::vector<std::set<Pair>> dealt = deal(pairs, lists, several, random);
+                    std::size_t all = 0;
+                    for (const std::set<Pair>& list : dealt) all += list.size();
+                    for (const bool disjoint : {false, true}) {
+                        if (disjoint && all > pairs.size()) continue;
+                        const std::vector<Pair> found = merged(dealt, layout, disjoint);
+                        CHECK(std::equal(found.begin(), found.end(), pairs.begin(), pairs.end()));
+                    }
                 }
             }
 }
@@ -140,7 +153,7 @@ TEST_CASE("two runs become one however they lie and however long they are", "[ho
             check_union(run_of(p, 0, all), run_of(q, all / 3, q + std::uint64_t{1}));  // within a gap of the other
         }
     for (const std::uint32_t turn : {1u, 2u, 5u, 7u, 8u, 9u, 23u, 100u, 3000u})
-        for (const std::uint32_t common : {2u, 30u, 1000000u})
+        for (const std::uint32_t common : {0u, 2u, 30u, 1000000u})
             for (const std::size_t keys : {511u, 640u, 1000u, 9000u}) {
                 INFO(keys << " keys in turns of " << turn << ", one of " << common << " common");
                 const auto [one, other] = in_turns(keys, turn, common);
@@ -175,7 +188,7 @@ TEST_CASE("keys of many more pairs than caches hold become one list", "[host]") 
     for (const std::size_t before : {0u, 1u}) {  // pairs that begin on a multiple of 16 bytes, and those that do not
         PairList out;
         if (before == 1) out.append({{0, 0}});
-        merge_keys({{layout, keys[0], starts[0]}, {layout, keys[1], starts[1]}}, out);
+        merge_keys({{layout, keys[0], starts[0]}, {layout, keys[1], starts[1]}}, false, out);
         const View<const Pair> found = out.view();
         CHECK(std::equal(found.begin() + before, found.end(), pairs.begin(), pairs.end()));
     }

@@ -49,7 +49,7 @@ std::vector<Pair> merged(const SlabDeal& deal, std::vector<std::vector<Pair>> fo
         if (this_as != As::Places)
             for (Pair& pair : found[s]) pair = {deal.members(s)[pair.a], deal.members(s)[pair.b]};
         if (this_as != As::Keys) {
-            lists.push_back({found[s], this_as == As::Names, {}});
+            lists.push_back({found[s], this_as == As::Names, false, {}});
             continue;
         }
         for (std::uint32_t bucket = 0; bucket <= layout.buckets; ++bucket)
@@ -57,7 +57,7 @@ std::vector<Pair> merged(const SlabDeal& deal, std::vector<std::vector<Pair>> fo
                 std::lower_bound(found[s].begin(), found[s].end(), Pair{bucket << layout.shift, 0}) -
                 found[s].begin()));
         for (const Pair& pair : found[s]) keys[s].push_back((pair.a & 63u) << layout.b_bits | pair.b);
-        lists.push_back({{}, true, {layout, keys[s], starts[s]}});
+        lists.push_back({{}, true, false, {layout, keys[s], starts[s]}});
     }
     PairList list;
     merge_slabs(deal, lists, sorted, list);

@@ -47,8 +47,8 @@ void check_keys(detail::Device& device, detail::PairSort& sort, std::vector<Pair
         const std::uint32_t count = packed.starts[bucket + 1] - start;
         if (count == 0) continue;
         const std::uint32_t* const keys = packed.keys.as<std::uint32_t>() + start;
-        detail::unpack_keys<false>(keys, count, bucket, *layout, found.data() + start);
-        detail::unpack_keys<true>(keys, count, bucket, *layout, past_caches.data() + start);
+        detail::KeyUnpacker<false>(bucket, *layout).all(keys, count, found.data() + start);
+        detail::KeyUnpacker<true>(bucket, *layout).all(keys, count, past_caches.data() + start);
     }
     detail::end_past_caches();
     CHECK(found == pairs);
