@@ -15,7 +15,7 @@
 namespace clinch::scaling {
 namespace {
 
-constexpr int settling = 5, measured = 7;
+constexpr int settling = 6, measured = 15;
 
 // The median of several runs, in seconds, after some that build kernels and settle the shares.
 template <class Run>

@@ -274,20 +274,20 @@ typedef struct {
     uint axis;
     float low, high;
     bool all;  // those of the block in search, whatever it meets
-} Wanted;
+} Range;
 
-inline Wanted wanted_of(uint axis, float low, float high, const BvhBox* around) {
+inline Range range_of(uint axis, float low, float high, const BvhBox* around) {
     float first = axis == 0 ? around->min_x : axis == 1 ? around->min_y : around->min_z;
     float last = axis == 0 ? around->max_x : axis == 1 ? around->max_y : around->max_z;
-    Wanted w = {axis, low, high, first >= low && last < high};
-    return w;
+    Range range = {axis, low, high, first >= low && last < high};
+    return range;
 }
 
 // Of LANES boxes that begin at `begins` on the axis, those whose pairs with one that begins at `begin` are wanted, as
 // bits.
-inline uint wanted_lanes(const Wanted* w, floatN begins, float begin) {
+inline uint lanes_in_range(const Range* range, floatN begins, float begin) {
     floatN both = fmax(begins, (floatN)begin);
-    return lane_bits(as_mask((both >= (floatN)w->low) & (both < (floatN)w->high)));
+    return lane_bits(as_mask((both >= (floatN)range->low) & (both < (floatN)range->high)));
 }
 
 // Of LANES boxes of a block, those that overlap *b, as bits.
@@ -362,7 +362,7 @@ inline void find_hits(const Candidates* c, const BvhBox* box, uint row, uint fro
 }
 
 // Pairs of the boxes of block q with the candidates; forgets those.
-inline void test_candidates(global const float* tree, global const uint* order, uint q, const Wanted* wanted, Candidates* c,
+inline void test_candidates(global const float* tree, global const uint* order, uint q, const Range* range, Candidates* c,
                             PairSink* sink) {
     global const float* block = tree + q * (ulong)BLOCK;
     const uint vectors = (c->count + LANES - 1) / LANES;
@@ -376,8 +376,8 @@ inline void test_candidates(global const float* tree, global const uint* order, 
     for (uint i = 0; i < h.count; ++i) {
         uint v = h.row_and_vector[i] & 255, l = h.row_and_vector[i] >> 8;
         uint bits = h.bits[i];
-        if (!wanted->all)
-            bits &= wanted_lanes(wanted, load_lanes(v, c->columns + wanted->axis * CANDIDATES), block[wanted->axis * WIDTH + l]);
+        if (!range->all)
+            bits &= lanes_in_range(range, load_lanes(v, c->columns + range->axis * CANDIDATES), block[range->axis * WIDTH + l]);
         sink_put_lanes(sink, c->ids + v * LANES, bits, order[q * WIDTH + l]);
     }
     sink->counts.tests += WIDTH * c->count;
@@ -387,9 +387,9 @@ inline void test_candidates(global const float* tree, global const uint* order, 
 
 // Block j of the other tree against the box around block q.
 inline void visit_block(global const float* tree, global const uint* order, uint q, global const float* other,
-                        global const uint* other_order, uint j, const BvhBox* box, const Wanted* wanted, Candidates* c,
+                        global const uint* other_order, uint j, const BvhBox* box, const Range* range, Candidates* c,
                         PairSink* sink) {
-    if (c->count > MOST_CANDIDATES - WIDTH) test_candidates(tree, order, q, wanted, c, sink);
+    if (c->count > MOST_CANDIDATES - WIDTH) test_candidates(tree, order, q, range, c, sink);
     for (uint s = 0; s < STEPS; ++s) {
         global const float* p = other + j * (ulong)BLOCK + s * LANES;
         uint bits = overlapping_lanes(p, box);
@@ -401,7 +401,7 @@ inline void visit_block(global const float* tree, global const uint* order, uint
 // Pairs of the boxes `rows` of block a of one tree with the boxes `columns` of block b of another. If they are `own`,
 // one and the same block: of those behind the row only.
 inline void test_rows(global const float* tree, global const uint* order, uint a, uint rows, global const float* other,
-                      global const uint* other_order, uint b, uint columns, bool own, const Wanted* wanted, PairSink* sink) {
+                      global const uint* other_order, uint b, uint columns, bool own, const Range* range, PairSink* sink) {
     global const float* block = tree + a * (ulong)BLOCK;
     sink->counts.tests += WIDTH * popcount(rows);
     for (uint s = 0; s < STEPS; ++s) {
@@ -417,8 +417,8 @@ inline void test_rows(global const float* tree, global const uint* order, uint a
                               (max_x >= (floatN)box.min_x) & (max_y >= (floatN)box.min_y) & (max_z >= (floatN)box.min_z));
             uint hits = lane_bits(m) & wanted;
             if (own) hits &= (0xfffffffeu << l) >> (s * LANES);
-            if (!wanted->all)
-                hits &= wanted_lanes(wanted, load_lanes(0, p + wanted->axis * WIDTH), block[wanted->axis * WIDTH + l]);
+            if (!range->all)
+                hits &= lanes_in_range(range, load_lanes(0, p + range->axis * WIDTH), block[range->axis * WIDTH + l]);
             if (hits != 0) sink_put_lanes(sink, other_order + b * WIDTH + s * LANES, hits, order[a * WIDTH + l]);
         }
     }
@@ -427,15 +427,15 @@ inline void test_rows(global const float* tree, global const uint* order, uint a
 // Block q against block j of the other tree; `box` is around q.
 inline void visit_block(global const float* tree, global const uint* order, uint q, global const float* other,
                         constant BvhLevels* other_levels, global const uint* other_order, uint j, const BvhBox* box, bool own,
-                        const Wanted* wanted, PairSink* sink) {
+                        const Range* range, PairSink* sink) {
     BvhBox other_box = box_in(other + (other_levels->first[1] + j / WIDTH) * (ulong)BLOCK, j % WIDTH);
     uint rows = overlapping(tree + q * (ulong)BLOCK, &other_box);
     uint columns = overlapping(other + j * (ulong)BLOCK, box);
     sink->counts.tests += 2 * WIDTH;
     if (popcount(rows) <= popcount(columns))
-        test_rows(tree, order, q, rows, other, other_order, j, columns, own, wanted, sink);
+        test_rows(tree, order, q, rows, other, other_order, j, columns, own, range, sink);
     else
-        test_rows(other, other_order, j, columns, tree, order, q, rows, own, wanted, sink);
+        test_rows(other, other_order, j, columns, tree, order, q, rows, own, range, sink);
 }
 #endif
 
@@ -459,7 +459,7 @@ inline void search(global const float* tree, constant BvhLevels* levels, global 
                    global const float* other, constant BvhLevels* other_levels, global const uint* other_order, bool same,
                    uint from, uint last, uint axis, float low, float high, PairSink* sink) {
     BvhBox box = box_in(tree + (levels->first[1] + q / WIDTH) * (ulong)BLOCK, q % WIDTH);
-    Wanted wanted = wanted_of(axis, low, high, &box);
+    Range range = range_of(axis, low, high, &box);
 #if LANES > 1
     Candidates candidates;
     candidates.count = 0;
@@ -490,13 +490,13 @@ inline void search(global const float* tree, constant BvhLevels* levels, global 
             continue;
         }
 #if LANES > 1
-        visit_block(tree, order, q, other, other_order, node, &box, &wanted, &candidates, sink);
+        visit_block(tree, order, q, other, other_order, node, &box, &range, &candidates, sink);
 #else
-        visit_block(tree, order, q, other, other_levels, other_order, node, &box, same && node == q, &wanted, sink);
+        visit_block(tree, order, q, other, other_levels, other_order, node, &box, same && node == q, &range, sink);
 #endif
     }
 #if LANES > 1
-    test_candidates(tree, order, q, &wanted, &candidates, sink);
+    test_candidates(tree, order, q, &range, &candidates, sink);
 #endif
 }
 

@@ -39,13 +39,20 @@ void check_case(std::uint32_t i, const std::vector<Aabb>& boxes, const std::vect
     const bool sorted = c.order == Order::Sorted;
     for (int call = 0; call < 2; ++call) {
         SlabLists lists;
+        std::uint64_t found = 0;
+        bool in_range = true;
         for (std::size_t s = 0; s < 2; ++s) {
             workers[s].find(task, s);
             lists.push_back(workers[s].pairs());
-            CHECK(lists[s].keys.any() == (c.asked && !c.filtered && !c.pieces && sorted && PairSort::packs_on(info)));
+            CHECK(lists[s].keys.any() == (c.asked && !c.filtered && !c.pieces && sorted && PairSort::packs_on(info) &&
+                                          workers[s].found() > 0));
             CHECK(lists[s].named == !c.filtered);
             CHECK(lists[s].keys.size() + lists[s].pairs.size() == workers[s].found());
+            found += workers[s].found();
+            in_range = in_range && lists[s].in_range;
         }
+        CHECK(in_range);
+        CHECK(found == expected.size());  // each pair once
         PairList list;
         merge_slabs(deal, lists, sorted, list);
         std::vector<Pair> pairs(list.view().begin(), list.view().end());

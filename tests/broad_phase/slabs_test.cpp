@@ -252,3 +252,17 @@ TEST_CASE("what is no box is met in one slab at least, and boxes without end in 
     CHECK(deal.boxes() == 0);
     CHECK(merged(deal, {{}, {}}, true).empty());
 }
+
+TEST_CASE("no cut is what a device may take for another number", "[host]") {
+    const std::vector<float> places{0.0f, -0.0f, 1e-40f, -1e-40f, 1e-45f};
+    std::vector<Aabb> boxes;
+    for (std::size_t i = 0; i < 1000; ++i) {
+        const float at = places[i % places.size()];
+        boxes.push_back({{at, at, at}, {at, at, at}});
+    }
+    const Slabs slabs = choose_slabs(boxes, {0.3, 0.3, 0.4});
+    for (const float cut : slabs.cuts) CHECK(std::fabs(cut) >= std::numeric_limits<float>::min());
+    CHECK(slabs.low(0) < -1e38f);
+    CHECK(slabs.high(0) == slabs.low(1));
+    CHECK(slabs.high(2) > 1e38f);
+}
