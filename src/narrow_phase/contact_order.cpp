@@ -44,7 +44,8 @@ void ask_for(const Contact& row) {
 template <class Word>
 void ContactOrder::deal(Places<Word>& places, View<const std::uint64_t> keys) {
     const std::size_t n = keys.size(), count = block_count(n);
-    const auto part_of = [&](std::uint64_t key) { return static_cast<std::size_t>((key >> 32) * count / bodies_); };
+    const std::uint64_t scale = scale_;
+    const auto part_of = [scale](std::uint64_t key) { return static_cast<std::size_t>((key >> 32) * scale >> 32); };
     at_.assign(count * count, 0);
     std::size_t* const at = at_.data();
     parallel_for(count, count > 1,
@@ -65,11 +66,12 @@ void ContactOrder::deal(Places<Word>& places, View<const std::uint64_t> keys) {
         places.spare.resize(n + n / 8);
     }
     Place<Word>* const all = places.all.data();
+    std::vector<std::uint64_t> bodies(count);  // that each part begins with
+    for (std::size_t p = 0; p < count; ++p) bodies[p] = ((std::uint64_t{p} << 32) + scale - 1) / scale;
     parallel_for(count, count > 1, [&](std::size_t k) {
-        each_of(k, n, [&](std::size_t i) {
+        each_of(k, n, [&, b_bits = b_bits_](std::size_t i) {
             const std::size_t part = part_of(keys[i]);
-            const std::uint64_t first = part * bodies_ / count;  // no a of the part is below it
-            const std::uint64_t key = ((keys[i] >> 32) - first) << b_bits_ | (keys[i] & 0xffffffffu);
+            const std::uint64_t key = ((keys[i] >> 32) - bodies[part]) << b_bits | (keys[i] & 0xffffffffu);
             all[at[k * count + part]++] = {static_cast<Word>(key), static_cast<Word>(i)};
         });
     });
@@ -98,9 +100,9 @@ void ContactOrder::put_by(Places<Word>& places, View<const Contact> rows, View<c
 void ContactOrder::put(View<const Contact> rows, View<const std::uint64_t> keys, std::uint32_t bodies, Contact* to) {
     const std::size_t n = rows.size();
     if (n == 0) return;
-    bodies_ = bodies;
-    b_bits_ = bits_of(bodies_ - 1);
-    part_bits_ = bits_of(bodies_ / block_count(n) + 1);
+    scale_ = (std::uint64_t{block_count(n)} << 32) / bodies;
+    b_bits_ = bits_of(std::uint64_t{bodies} - 1);
+    part_bits_ = bits_of((std::uint64_t{1} << 32) / scale_ + 1);
     if (b_bits_ + part_bits_ <= 32 && n <= 0xffffffffu)
         put_by(narrow_, rows, keys, to);
     else

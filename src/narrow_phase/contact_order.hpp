@@ -36,7 +36,7 @@ private:
     template <class Word>
     void deal(Places<Word>& places, View<const std::uint64_t> keys);
 
-    std::uint64_t bodies_ = 0;
+    std::uint64_t scale_ = 1;              // a body's a times this, over 2^32, is its part
     unsigned b_bits_ = 0, part_bits_ = 0;  // of a key
     Places<std::uint32_t> narrow_;         // where keys are that short
     Places<std::uint64_t> wide_;
