@@ -52,6 +52,11 @@ void PhaseRun::take(std::size_t device, View<const Pair> pairs) {
     }
 }
 
+void PhaseRun::pause(std::size_t device) {
+    Hands& hands = hands_.at(device);
+    if (!roles_.narrow.empty() && hands.chunk.size() >= NarrowStream::few_pairs) deliver(device, hands.chunk);
+}
+
 // Into the buffer; while that is full, a device that may does one itself instead of waiting.
 void PhaseRun::deliver(std::size_t device, Chunk& chunk) {
     ++chunks_;

@@ -53,6 +53,8 @@ public:
     std::vector<std::exception_ptr> run(const FindPairs& find_pairs, bool expected);
     /// Pairs that were found, in the thread of that device, or `host`.
     void take(std::size_t device, View<const Pair> pairs);
+    /// None more come for a while from there: devices of the narrow phase that wait can have these.
+    void pause(std::size_t device);
     /// Pairs that should be found at a time, at most.
     std::size_t piece() const noexcept { return 2 * chunk_pairs_; }
     /// Where pairs go that no device of the broad phase has found.

@@ -74,19 +74,22 @@ PhaseRoles PhaseStream::roles_for(const AlgorithmRow& row, const std::vector<std
     return roles;
 }
 
-// Chunks enough for all devices to be done at about the same time, but none so short that it is all beginning: that
-// takes a few tenths of a millisecond.
+// Pairs of a chunk that is not all beginning: that takes a few tenths of a millisecond.
+std::size_t PhaseStream::least_chunk() const {
+    constexpr double least_ms = 0.75, most_least = 4096.0;
+    return static_cast<std::size_t>(
+        std::clamp(least_ms / std::max(last_pair_ms_, 1e-9), double{NarrowStream::few_pairs}, most_least));
+}
+
+// Chunks enough for all devices to be done at about the same time.
 std::size_t PhaseStream::chunk_pairs(std::uint64_t expected) const {
-    constexpr std::uint64_t unknown = 16384, most_least = 4096, chunks_a_device = 2;
-    constexpr double least_ms = 0.75;
+    constexpr std::uint64_t unknown = 16384, chunks_a_device = 2;
     if (forced.chunk_pairs > 0) return std::max<std::size_t>(forced.chunk_pairs, NarrowStream::few_pairs);
     if (expected == 0) return unknown;
-    const auto least = static_cast<std::uint64_t>(
-        std::clamp(least_ms / std::max(last_pair_ms_, 1e-9), double{NarrowStream::few_pairs}, double{most_least}));
     const std::uint64_t chunks = chunks_a_device * std::max<std::size_t>(1, context_.crew().size());
     // A few more than that share: else a few pairs too many would make one more chunk.
     const std::uint64_t share = expected / chunks + expected / (16 * chunks) + 1;
-    return static_cast<std::size_t>(std::clamp<std::uint64_t>(share, least, Slots::chunk_pairs));
+    return static_cast<std::size_t>(std::clamp<std::uint64_t>(share, least_chunk(), Slots::chunk_pairs));
 }
 
 // Whether boxes are searched where they are made: on the primary device, or the host.
@@ -97,6 +100,7 @@ bool PhaseStream::in_place(const PhaseRoles& roles) const {
 void PhaseStream::find_pairs(const Step& step, Prepared& ready, const PhaseRoles& roles, PhaseRun& phases,
                              FindCounts& counts) {
     phases.take(phases.broad_place(), ready.more_pairs);
+    if (ready.more_pairs.size() >= least_chunk()) phases.pause(phases.broad_place());
     if (in_place(roles)) return find_in_place(step, ready, phases, counts);
     const auto take = [&](std::size_t device, View<const Pair> pairs) { phases.take(device, pairs); };
     split_.stream(step.row, ready.boxes, ready.filters, {take, phases.piece()}, counts);

@@ -64,6 +64,7 @@ public:
 
 private:
     PhaseRoles roles_for(const AlgorithmRow& row, const std::vector<std::size_t>& alike, std::uint64_t bodies);
+    std::size_t least_chunk() const;
     std::size_t chunk_pairs(std::uint64_t expected) const;
     bool in_place(const PhaseRoles& roles) const;
     void find_pairs(const Step& step, Prepared& ready, const PhaseRoles& roles, PhaseRun& phases, FindCounts& counts);
