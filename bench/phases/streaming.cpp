@@ -1,6 +1,8 @@
 #include "bench/phases/streaming.hpp"
 
+#include <algorithm>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -31,48 +33,113 @@ Pipeline make(Context& context, const Play& play, Way way) {
     return pipeline;
 }
 
-// One pipeline of each way.
-class Pipelines {
+// Frames in a row, as programs step them: some to begin with, then some that are measured.
+constexpr std::size_t unmeasured = 2, in_a_row = 4;
+
+// A way with bodies of its own, which fall as those of the others do.
+class Player {
 public:
-    Pipelines(Context& one, Context& two, const Play& play) {
-        pipelines_.reserve(ways);
+    Player(Context& context, const Play& play, Way way)
+        : pipeline_(make(context, play, way)), bodies_(play.kind, play.bodies, play.seed) {}
+
+    // Goes on to that frame without a step.
+    void skip_to(std::size_t frame) {
+        while (bodies_.frame() < frame) bodies_.step();
+    }
+    double step(const Scene& scene) {
+        const detail::Stopwatch watch;
+        step_anew(pipeline_, scene);
+        return watch.ms();
+    }
+    // On to the next frame, and a step there; how long that took.
+    double next() {
+        bodies_.step();
+        return step(bodies_.scene());
+    }
+    View<const Contact> contacts() const { return pipeline_.impl().contacts; }
+    const Report& report() const { return pipeline_.impl().report; }
+
+private:
+    Pipeline pipeline_;
+    scenes::FallingBodies bodies_;
+};
+
+// All ways, one after the other, beginning with another one each time.
+class Players {
+public:
+    Players(Context& one, Context& two, const Play& play) {
         for (std::size_t i = 0; i < ways; ++i) {
             const auto way = static_cast<Way>(i);
-            pipelines_.push_back(make(way == Way::Sequence ? one : two, play, way));
+            players_.push_back(std::make_unique<Player>(way == Way::Sequence ? one : two, play, way));
         }
     }
 
-    // Steps all, beginning with another one each time, so that none always follows the same.
+    // A scene of its own, as frame number `frame`.
     Frame step(const Scene& scene, std::size_t frame) {
-        Frame stepped{frame, 0, 0, {}, 0.0, 0.0, 0};
-        for (std::size_t i = 0; i < ways; ++i) {
-            const std::size_t way = (first_ + i) % ways;
-            const detail::Stopwatch watch;
-            step_anew(pipelines_[way], scene);
-            stepped.ms[way] = watch.ms();
-        }
-        first_ = (first_ + 1) % ways;
-        for (std::size_t way = 1; way < ways; ++way) check_same(way, frame);
-        const Report& sequence = pipelines_[0].impl().report;
-        stepped.pairs = sequence.pairs;
-        stepped.contacts = sequence.contacts;
-        stepped.broad_ms = sequence.ms.broad;
-        stepped.narrow_ms = sequence.ms.narrow;
-        stepped.pair_bytes = pipelines_[static_cast<std::size_t>(Way::Streamed)].impl().report.stream.pair_bytes;
-        return stepped;
+        std::vector<Frame> frames{{frame, 0, 0, {}, 0.0, 0.0, 0}};
+        play(frames, [&](Player& player) { return player.step(scene); });
+        return frames.front();
+    }
+
+    // Frames in a row, the first of them number `first`.
+    std::vector<Frame> step_from(std::size_t first) {
+        std::vector<Frame> frames;
+        for (std::size_t k = 0; k < in_a_row; ++k) frames.push_back({first + k, 0, 0, {}, 0.0, 0.0, 0});
+        for (const auto& player : players_) player->skip_to(first - 1 - unmeasured);
+        play(
+            frames, [](Player& player) { return player.next(); },
+            [](Player& player) {
+                for (std::size_t k = 0; k < unmeasured; ++k) player.next();
+            });
+        return frames;
     }
 
 private:
-    void check_same(std::size_t way, std::size_t frame) const {
-        const View<const Contact> expected = pipelines_[0].impl().contacts, found = pipelines_[way].impl().contacts;
-        if (found.size() == expected.size() &&
-            (found.empty() || std::memcmp(found.data(), expected.data(), found.size() * sizeof(Contact)) == 0))
+    template <class Step, class Begin>
+    void play(std::vector<Frame>& frames, const Step& step, const Begin& begin) {
+        found_.clear();
+        for (std::size_t i = 0; i < ways; ++i) {
+            const std::size_t way = (first_ + i) % ways;
+            Player& player = *players_[way];
+            begin(player);
+            for (std::size_t k = 0; k < frames.size(); ++k) {
+                frames[k].ms[way] = step(player);
+                note(static_cast<Way>(way), player, frames[k]);
+                check_same(k, way, frames[k].frame);
+            }
+        }
+        first_ = (first_ + 1) % ways;
+    }
+    template <class Step>
+    void play(std::vector<Frame>& frames, const Step& step) {
+        play(frames, step, [](Player&) {});
+    }
+    static void note(Way way, const Player& player, Frame& frame) {
+        const Report& report = player.report();
+        if (way == Way::Streamed) frame.pair_bytes = report.stream.pair_bytes;
+        if (way != Way::Sequence) return;
+        frame.pairs = report.pairs;
+        frame.contacts = report.contacts;
+        frame.broad_ms = report.ms.broad;
+        frame.narrow_ms = report.ms.narrow;
+    }
+    // Against what the first way has found in that one of the frames in a row.
+    void check_same(std::size_t k, std::size_t way, std::size_t frame) {
+        const View<const Contact> contacts = players_[way]->contacts();
+        if (found_.size() == k) {
+            found_.emplace_back(contacts.begin(), contacts.end());
             return;
-        throw std::runtime_error(std::string("frame ") + std::to_string(frame) + ": contacts of '" + way_names[way] +
-                                 "' are not those of '" + way_names[0] + "'");
+        }
+        const std::vector<Contact>& expected = found_[k];
+        if (contacts.size() == expected.size() &&
+            (contacts.empty() || std::memcmp(contacts.data(), expected.data(), contacts.size() * sizeof(Contact)) == 0))
+            return;
+        throw std::runtime_error("frame " + std::to_string(frame) + ": contacts of '" + way_names[way] +
+                                 "' are not those of '" + way_names[first_] + "'");
     }
 
-    std::vector<Pipeline> pipelines_;
+    std::vector<std::unique_ptr<Player>> players_;
+    std::vector<std::vector<Contact>> found_;
     std::size_t first_ = 0;
 };
 
@@ -83,24 +150,17 @@ Bench::Bench(const DeviceInfo& cpu) : one_(bench::parts_of(cpu, 1)), two_(bench:
 }
 
 Played Bench::compare(const Play& play, std::size_t every) {
-    Pipelines pipelines(one_, two_, play);
+    Players players(one_, two_, play);
     Played played{};
     {
         scenes::FallingBodies rest(play.kind, play.bodies, play.seed);
         while (rest.moving() > 0) rest.step();
         played.frames = rest.frame();
-        played.rest = pipelines.step(rest.scene(), rest.frame());  // and builds the kernels
+        played.rest = players.step(rest.scene(), rest.frame());  // and builds the kernels
     }
-    scenes::FallingBodies bodies(play.kind, play.bodies, play.seed);
-    pipelines.step(bodies.scene(), 0);
-    while (bodies.moving() > 0) {
-        bodies.step();
-        const std::size_t frame = bodies.frame();
-        if (frame % every == 0)
-            played.stepped.push_back(pipelines.step(bodies.scene(), frame));
-        else if ((frame + 1) % every == 0)
-            pipelines.step(bodies.scene(), frame);
-    }
+    const std::size_t stride = std::max(every * in_a_row, unmeasured + in_a_row);
+    for (std::size_t first = unmeasured + 1; first + in_a_row <= played.frames; first += stride)
+        for (const Frame& frame : players.step_from(first)) played.stepped.push_back(frame);
     return played;
 }
 

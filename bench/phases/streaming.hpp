@@ -50,8 +50,9 @@ class Bench {
 public:
     explicit Bench(const DeviceInfo& cpu);
 
-    /// Plays until all bodies rest; measures every `every`-th frame, each after an unmeasured step of the frame before.
-    /// All pipelines find all pairs anew. Throws std::runtime_error if they do not find the same contacts, to the byte.
+    /// Plays until all bodies rest; measures one of `every` frames, four in a row, which each way steps before the next
+    /// way does (two unmeasured ones first), as a program steps one frame after the other. All pipelines find all pairs
+    /// anew. Throws std::runtime_error if they do not find the same contacts, to the byte.
     Played compare(const Play& play, std::size_t every);
 
     /// Plays once more, with the sequence alone: what each phase takes of one core in each frame but the first, in
