@@ -119,7 +119,7 @@ bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& cr
 // pay.
 bool BroadSplit::settle(View<const Aabb> boxes, const std::vector<std::size_t>& crew, bool send) {
     prepare(crew);
-    const bool same = crew == dealt_to_ && SteadyShares::may_stay(dealt_, fractions_of(crew));
+    const bool same = crew == dealt_to_ && shares_.may_stay(dealt_, fractions_of(crew));
     if (same && keep(boxes, send)) return true;
     if (!deal(boxes, crew)) return false;
     if (send) keep(boxes, true);

@@ -36,12 +36,17 @@ void SteadyShares::retire(std::size_t device) {
     given_[device] = 0.0;
 }
 
+// A small loss step after step is worth dealing anew once it adds up to what that costs [as renting skis until one has
+// paid for them: Karlin et al., Competitive snoopy caching, 1988]; what is less than times waver is none.
 bool SteadyShares::may_stay(const std::vector<double>& dealt, const std::vector<double>& wanted) {
-    constexpr double later = 1.05;
-    if (dealt.size() != wanted.size()) return false;
-    for (std::size_t i = 0; i < dealt.size(); ++i)
-        if (dealt[i] > later * wanted[i]) return false;
-    return true;
+    constexpr double most = 0.05, wavering = 0.02, price = 0.2;  // parts of a step
+    double late = dealt.size() == wanted.size() ? 0.0 : 1.0;
+    for (std::size_t i = 0; i < std::min(dealt.size(), wanted.size()); ++i)
+        if (dealt[i] > 0.0) late = std::max(late, wanted[i] > 0.0 ? dealt[i] / wanted[i] - 1.0 : 1.0);
+    lost_ += std::max(0.0, late - wavering);
+    if (late <= most && lost_ < price) return true;
+    lost_ = 0.0;
+    return false;
 }
 
 double SteadyShares::Paces::after(double pace) {

@@ -21,9 +21,10 @@ public:
     void measured(std::vector<Shares::Measure> measures);
     /// As Shares::retire().
     void retire(std::size_t device);
-    /// Whether work that was dealt by the fractions `dealt` (sum 1) may stay so when it should be dealt by `wanted`
-    /// (sum 1): no device would be done later than is best by more than a twentieth.
-    static bool may_stay(const std::vector<double>& dealt, const std::vector<double>& wanted);
+    /// Once a step: whether work that was dealt by the fractions `dealt` (sum 1) may stay so when it should be dealt by
+    /// `wanted` (sum 1): no device would be done later than is best by more than a twentieth, and what was lost that way
+    /// since it was dealt is not worth dealing it anew.
+    bool may_stay(const std::vector<double>& dealt, const std::vector<double>& wanted);
 
 private:
     // Seconds for a unit of work in the last steps.
@@ -40,6 +41,7 @@ private:
     Shares shares_;
     std::vector<double> given_;
     std::vector<Paces> paces_;
+    double lost_ = 0.0;  // steps, since work was dealt
 };
 
 }  // namespace clinch::detail
