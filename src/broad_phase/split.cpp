@@ -336,7 +336,8 @@ void BroadSplit::measure() {
     std::vector<Shares::Measure> measures(context_.infos.size());
     for (std::size_t s = 0; s < workers_.size(); ++s) {
         const std::size_t device = workers_[s]->device();
-        const auto work = static_cast<double>(deal_.members(s).size());
+        // What was dealt, not what became of it: boxes that reach over a cut are as many however much a device has.
+        const double work = dealt_[s] * static_cast<double>(deal_.boxes());
         if (work > 0.0) measures[device] = {work, workers_[s]->seconds()};
     }
     shares_.measured(std::move(measures));
