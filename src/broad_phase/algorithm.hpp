@@ -22,7 +22,6 @@ struct FindCounts {
     std::uint64_t boxes_inside = 0;  ///< changed boxes that stayed within their fattened box
     double download_ms = 0.0;        ///< spent making pairs readable on the host
     bool named = false;              ///< pairs are of names, see BoxInput::name
-    bool in_range = false;           ///< all pairs are in BoxInput::wanted()
     bool invalid_boxes = false;      ///< it met boxes that are no boxes; which, the caller finds out
 };
 
@@ -40,6 +39,7 @@ struct AlgorithmRow {
     const char* name;
     bool needs_device;
     bool long_loops;  ///< does not run on a device with the quirk loops-end-early
+    bool in_range;    ///< finds no pairs but those of BoxInput::wanted()
     /// `device` is null for a row that needs none.
     std::unique_ptr<BroadPhaseAlgorithm> (*make)(Device* device, const BroadPhaseOptions& options);
 };

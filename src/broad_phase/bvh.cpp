@@ -66,7 +66,6 @@ SinkLaunch Bvh::search(const BvhTree& tree, const BvhTree& other, const FilterIn
 
 void Bvh::find(BoxInput& boxes, const FilterInput& filters, PairList& pairs, FindCounts& counts) {
     const std::uint32_t n = boxes.count();
-    counts.in_range = true;
     if (n < 2) {
         counts.invalid_boxes = n == 1;  // one box is looked at on the host
         return;

@@ -43,8 +43,8 @@ public:
         names_version_ = version;
         bodies_ = bodies;
     }
-    /// Only pairs whose overlap begins in this range are wanted. An algorithm may find others all the same; one that
-    /// does not sets FindCounts::in_range.
+    /// Only pairs whose overlap begins in this range are wanted. An algorithm may find others all the same,
+    /// unless its row says that it does not (AlgorithmRow::in_range).
     void want(const BeginRange& range) noexcept { range_ = range; }
     const BeginRange& wanted() const noexcept { return range_; }
     /// Null: boxes have their places as names.

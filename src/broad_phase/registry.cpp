@@ -20,13 +20,13 @@ std::unique_ptr<BroadPhaseAlgorithm> make_sweep3(Device* device, const BroadPhas
 namespace {
 
 const AlgorithmRow rows[] = {
-    {"brute", true, false, make_brute},
-    {"bvh", true, false, make_bvh},
-    {"grid", true, true, make_grid},
-    {"host-brute", false, false, make_host_brute},
-    {"host-sweep", false, false, make_host_sweep},
-    {"sweep", true, false, make_sweep},
-    {"sweep3", true, false, make_sweep3},
+    {"brute", true, false, false, make_brute},
+    {"bvh", true, false, true, make_bvh},
+    {"grid", true, true, false, make_grid},
+    {"host-brute", false, false, false, make_host_brute},
+    {"host-sweep", false, false, false, make_host_sweep},
+    {"sweep", true, false, false, make_sweep},
+    {"sweep3", true, false, false, make_sweep3},
 };
 
 // The choice of "auto": what an algorithm takes in nanoseconds, on two cores of a CPU with AVX-512; the cheapest is

@@ -105,9 +105,12 @@ void SlabWorker::search(const SlabTask& task, const std::vector<std::uint32_t>& 
 
 // Pairs of two boxes that begin before the slab are counted there, too, unless the algorithm leaves them out.
 void SlabWorker::count(const SlabTask& task, std::size_t s) {
-    search(task, boxes_in(task.deal, s, [s](SlabSpan span) { return span.first <= s && s <= span.last; }));
+    if (in_range_)
+        search(task, task.deal.members(s));
+    else
+        search(task, boxes_in(task.deal, s, [s](SlabSpan span) { return span.first <= s && s <= span.last; }));
     found_ = counted_ = pairs_.size();
-    if (s == 0 || counts_.in_range) return;
+    if (s == 0 || in_range_) return;
     const FindCounts counts = counts_;
     pairs_.restart();
     search(task, boxes_in(task.deal, s, [s](SlabSpan span) { return span.first < s && s <= span.last; }));
@@ -126,7 +129,7 @@ void SlabWorker::stream(const SlabTask& task, std::size_t s) {
             owned_.clear();
             for (const Pair& pair : pairs)
                 if (const Pair named{members[pair.a], members[pair.b]};
-                    counts_.in_range || task.deal.owner(named.a, named.b) == s)
+                    in_range_ || task.deal.owner(named.a, named.b) == s)
                     owned_.push_back(named);
             pairs = {owned_.data(), owned_.size()};
         }
@@ -147,6 +150,7 @@ void SlabWorker::find(const SlabTask& task, std::size_t s) {
     const double built_before = device.report().build_ms;
     pairs_.clear();
     counts_ = {};
+    in_range_ = task.row.in_range;
     slab_ = s;
     if (task.counts_only) {
         pairs_.count_only();

@@ -57,7 +57,7 @@ public:
     void find(const SlabTask& task, std::size_t s);
 
     /// What was found.
-    SlabList pairs() const noexcept { return {pairs_.view(), counts_.named, counts_.in_range, pairs_.keys()}; }
+    SlabList pairs() const noexcept { return {pairs_.view(), counts_.named, in_range_, pairs_.keys()}; }
     /// How many pairs were found in the slab; of a stream, those that belong to it.
     std::uint64_t found() const noexcept { return found_; }
     /// How many of them belong to it; only where they were counted.
@@ -87,6 +87,7 @@ private:
     std::map<const AlgorithmRow*, std::unique_ptr<BroadPhaseAlgorithm>> made_;
     PairList pairs_;  // after `made_`, whose buffers it may map: it ends first
     FindCounts counts_;
+    bool in_range_ = false;  // all that were found
     std::uint64_t found_ = 0, counted_ = 0;
     double seconds_ = 0.0, taken_ms_ = 0.0;
     std::vector<Pair> owned_;  // of a piece of a stream

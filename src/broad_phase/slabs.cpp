@@ -97,9 +97,14 @@ void each_of(std::size_t block, std::size_t boxes, const What& what) {
 
 }  // namespace
 
-bool SlabDeal::keep(View<const Aabb> boxes, const std::vector<Aabb*>& rows) {
+bool SlabDeal::keep(View<const Aabb> boxes, const std::vector<Aabb*>& rows, bool spans) {
     const std::size_t n = boxes.size(), blocks = (n + boxes_a_block - 1) / boxes_a_block, count = members_.size();
     if (n != spans_.size() || count != slabs_.count()) return false;
+    std::vector<float> lows, highs;
+    for (std::size_t s = 0; s < count; ++s) {
+        lows.push_back(slabs_.low(s));
+        highs.push_back(s + 1 < count ? slabs_.high(s) : std::numeric_limits<float>::quiet_NaN());  // nothing is beyond
+    }
     std::vector<std::uint8_t> strays(blocks, 0);
     parallel_for(blocks, blocks > 1, [&](std::size_t block) {
         std::vector<Aabb*> to(rows);
@@ -107,17 +112,16 @@ bool SlabDeal::keep(View<const Aabb> boxes, const std::vector<Aabb*>& rows) {
         for (std::size_t s = 0; s < count; ++s)
             if (to[s] != nullptr) to[s] += places_[block * count + s];
         unsigned stray = 0;
-        const Slabs slabs = slabs_;  // none that what is written here may be part of
         const Aabb* const all = boxes.data();
-        SlabSpan* const spans = spans_.data();
         const SlabSpan* const member_of = member_of_.data();
-        each_of(block, n, [=, &to, &slabs, &stray](std::size_t i) {
-            const SlabSpan span = slabs.span_of(all[i]), in = member_of[i];
-            stray |= static_cast<unsigned>(span.first < in.first) | static_cast<unsigned>(span.last > in.last);
-            spans[i] = span;
+        each_of(block, n, [=, axis = slabs_.axis, low = lows.data(), high = highs.data(), &to, &stray](std::size_t i) {
+            const SlabSpan in = member_of[i];
+            stray |= static_cast<unsigned>(all[i].min[axis] < low[in.first]) |
+                     static_cast<unsigned>(all[i].max[axis] >= high[in.last]);
             for (std::size_t s = in.first; s <= in.last; ++s)
                 if (to[s] != nullptr) *to[s]++ = all[i];
         });
+        if (spans) each_of(block, n, [&](std::size_t i) { spans_[i] = slabs_.span_of(all[i]); });
         strays[block] = static_cast<std::uint8_t>(stray);
     });
     return std::find(strays.begin(), strays.end(), 1) == strays.end();

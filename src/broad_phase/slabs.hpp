@@ -65,7 +65,8 @@ public:
     /// For boxes that moved since: keeps cuts and members, in one pass. False if it cannot: there are more or fewer
     /// boxes, or one reaches into a slab that it is no member of. On the way members of slab s go to rows[s], if there
     /// is such a row and it is not null, in their order; what is there if it cannot is of no use.
-    bool keep(View<const Aabb> boxes, const std::vector<Aabb*>& rows = {});
+    /// Without `spans`, which takes less time, span() and owner() are of no use afterwards.
+    bool keep(View<const Aabb> boxes, const std::vector<Aabb*>& rows = {}, bool spans = true);
     const Slabs& slabs() const noexcept { return slabs_; }
     /// Another one after each deal(), none of them 0.
     std::uint64_t version() const noexcept { return version_; }

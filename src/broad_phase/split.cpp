@@ -117,18 +117,19 @@ bool BroadSplit::deal(View<const Aabb> boxes, const std::vector<std::size_t>& cr
 // The slabs for this call, and workers for them: those of the last one if they still have the right shares and all
 // boxes stay in those that they are members of. With `send` the boxes are in the workers' room. False if it does not
 // pay.
-bool BroadSplit::settle(View<const Aabb> boxes, const std::vector<std::size_t>& crew, bool send) {
+bool BroadSplit::settle(const AlgorithmRow& row, View<const Aabb> boxes, const std::vector<std::size_t>& crew,
+                        bool send) {
     prepare(crew);
     const bool same = crew == dealt_to_ && shares_.may_stay(dealt_, fractions_of(crew));
-    if (same && keep(boxes, send)) return true;
+    if (same && keep(row, boxes, send)) return true;
     if (!deal(boxes, crew)) return false;
-    if (send) keep(boxes, true);
+    if (send) keep(row, boxes, true);
     return true;
 }
 
 // Whether all boxes stay in slabs that they are members of; with `send` the host's threads put them, in the same pass,
 // where the devices find them. One pass for all: each device alone would read nearly all memory that boxes are in.
-bool BroadSplit::keep(View<const Aabb> boxes, bool send) {
+bool BroadSplit::keep(const AlgorithmRow& row, View<const Aabb> boxes, bool send) {
     std::vector<Aabb*> rows(workers_.size(), nullptr);
     if (send) {
         const auto make_room = [&](std::size_t s) { rows[s] = workers_[s]->room_for(deal_.members(s).size()); };
@@ -136,7 +137,7 @@ bool BroadSplit::keep(View<const Aabb> boxes, bool send) {
         for (std::size_t s = 0; s < rows.size(); ++s)
             if (not_begun[s] != nullptr) make_room(s);  // there was no thread to be had
     }
-    return deal_.keep(boxes, rows);
+    return deal_.keep(boxes, rows, !row.in_range);
 }
 
 void BroadSplit::start_call() {
@@ -150,7 +151,7 @@ bool BroadSplit::find(const AlgorithmRow& row, BoxInput& boxes, const FilterInpu
     start_call();
     const std::vector<std::size_t> crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
-    if (!settle(on_host, crew, !pairs.counts_only())) return false;
+    if (!settle(row, on_host, crew, row.in_range || !pairs.counts_only())) return false;
     const SlabTask task{row, on_host, filters, deal_, pairs.counts_only(), keys_for(boxes.count())};
     run(task);
     measure();
@@ -291,16 +292,16 @@ void BroadSplit::begin_stream(const AlgorithmRow& row, BoxInput& boxes, std::vec
     start_call();
     if (crew.empty()) crew = crew_for(row, boxes.count());
     const View<const Aabb> on_host = boxes.on_host();
-    if (settle(on_host, crew, false)) return;
+    if (settle(row, on_host, crew, false)) return;
     crew.resize(1);
-    settle(on_host, crew, false);
+    settle(row, on_host, crew, false);
 }
 
 std::uint64_t BroadSplit::stream(const AlgorithmRow& row, BoxInput& boxes, const FilterInput& filters,
                                  const PairTaker& taker, FindCounts& counts) {
     const View<const Aabb> on_host = boxes.on_host();
     const SlabTask task{row, on_host, filters, deal_, false, std::nullopt, &taker};
-    keep(on_host, true);
+    keep(row, on_host, true);
     run_in_place(task);
     measure();
     add_counts(counts);

@@ -56,8 +56,8 @@ private:
     std::vector<std::size_t> crew_for(const AlgorithmRow& row, std::uint64_t count) const;
     std::vector<double> fractions_of(const std::vector<std::size_t>& crew) const;
     bool deal(View<const Aabb> boxes, const std::vector<std::size_t>& crew);
-    bool settle(View<const Aabb> boxes, const std::vector<std::size_t>& crew, bool send);
-    bool keep(View<const Aabb> boxes, bool send);
+    bool settle(const AlgorithmRow& row, View<const Aabb> boxes, const std::vector<std::size_t>& crew, bool send);
+    bool keep(const AlgorithmRow& row, View<const Aabb> boxes, bool send);
     void prepare(const std::vector<std::size_t>& crew);
     std::optional<KeyLayout> keys_for(std::uint64_t boxes) const;
     void run(const SlabTask& task);

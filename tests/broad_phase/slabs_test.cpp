@@ -128,8 +128,11 @@ TEST_CASE("members stay while boxes move a little, and the list is right", "[hos
             const std::vector<std::uint32_t> before = deal.members(1);
             std::vector<Aabb> rows[2] = {std::vector<Aabb>(before.size()),
                                          std::vector<Aabb>(deal.members(2).size())};  // of slabs 1 and 2
+            SlabDeal without_spans = deal;
+            const bool looked = without_spans.keep(boxes, {}, false);
             const bool keeps =
                 step % 2 == 0 ? deal.keep(boxes) : deal.keep(boxes, {nullptr, rows[0].data(), rows[1].data()});
+            CHECK(looked == keeps);
             if (keeps) {
                 for (std::size_t s = 1; s < 3 && step % 2 == 1; ++s)
                     for (std::size_t i = 0; i < deal.members(s).size(); ++i)
