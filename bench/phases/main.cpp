@@ -203,7 +203,8 @@ int run(int argc, char** argv) {
     app.add_option("--kind", options.kinds, "scenes, in any number; default all")->check(CLI::IsMember(known));
     app.add_option("--factor", options.factor, "times the usual number of bodies; default 1")
         ->check(CLI::Range(1e-4, 1e4));
-    app.add_option("--every", options.every, "measure one of so many frames, four in a row; default 8")->check(CLI::Range(1, 1000));
+    app.add_option("--every", options.every, "measure one of so many frames, four in a row; default 8")
+        ->check(CLI::Range(1, 1000));
     app.add_option("--contacts-per-pair", options.contacts_per_pair, "1 to 8; default 1")->check(CLI::Range(1, 8));
     app.add_option("--seed", options.seed, "of the scenes; default 1");
     CLI11_PARSE(app, argc, argv);

@@ -22,8 +22,8 @@ public:
     /// As Shares::retire().
     void retire(std::size_t device);
     /// Once a step: whether work that was dealt by the fractions `dealt` (sum 1) may stay so when it should be dealt by
-    /// `wanted` (sum 1): no device would be done later than is best by more than a twentieth, and what was lost that way
-    /// since it was dealt is not worth dealing it anew.
+    /// `wanted` (sum 1): no device would be done later than is best by more than a twentieth, and what was lost that
+    /// way since it was dealt is not worth dealing it anew.
     bool may_stay(const std::vector<double>& dealt, const std::vector<double>& wanted);
 
 private:
