@@ -276,11 +276,14 @@ typedef struct {
     bool all;  // those of the block in search, whatever it meets
 } Range;
 
-inline Range range_of(uint axis, float low, float high, const BvhBox* around) {
+// (Not returned: see clinch_bounds.)
+inline void set_range(Range* range, uint axis, float low, float high, const BvhBox* around) {
     float first = axis == 0 ? around->min_x : axis == 1 ? around->min_y : around->min_z;
     float last = axis == 0 ? around->max_x : axis == 1 ? around->max_y : around->max_z;
-    Range range = {axis, low, high, first >= low && last < high};
-    return range;
+    range->axis = axis;
+    range->low = low;
+    range->high = high;
+    range->all = first >= low && last < high;
 }
 
 // Of LANES boxes that begin at `begins` on the axis, those whose pairs with one that begins at `begin` are wanted, as
@@ -459,7 +462,8 @@ inline void search(global const float* tree, constant BvhLevels* levels, global 
                    global const float* other, constant BvhLevels* other_levels, global const uint* other_order, bool same,
                    uint from, uint last, uint axis, float low, float high, PairSink* sink) {
     BvhBox box = box_in(tree + (levels->first[1] + q / WIDTH) * (ulong)BLOCK, q % WIDTH);
-    Range range = range_of(axis, low, high, &box);
+    Range range;
+    set_range(&range, axis, low, high, &box);
 #if LANES > 1
     Candidates candidates;
     candidates.count = 0;
