@@ -47,7 +47,7 @@ endforeach()
 
 if(PYTHON)
     execute_process(COMMAND ${PYTHON} ${SCRIPT} ${JSON} RESULT_VARIABLE status OUTPUT_VARIABLE table)
-    foreach(part "`cubes-on-plane`, 1,000 | 5 |" "`alphabet-hulls` | 16 |" "both split" "Assumed, not measured")
+    foreach(part "`cubes-on-plane`, 1,000 | 8 |" "`alphabet-hulls` | 16 |" "both split" "Assumed, not measured")
         string(FIND "${table}" "${part}" place)
         if(NOT status EQUAL 0 OR place LESS 0)
             message(FATAL_ERROR "plot_phases.py ended with ${status}, without '${part}':\n${table}")
