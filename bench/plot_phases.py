@@ -26,8 +26,8 @@ def streaming(result):
     scenes, averages = result["streaming"]["scenes"], result["streaming"]["averages"]
     yield f"# Both phases at once: {result['device']}"
     yield ""
-    yield (f"One of {result['every']} frames until all rest, some in a row, {result['contacts_per_pair']} contacts a pair at most; a step's "
-           "mean / median ms, in brackets by how much less than in sequence (of the means; the median frame's), %")
+    yield (f"One of {result['every']} frames until all rest, some in a row, {result['contacts_per_pair']} contacts a pair at "
+           "most; a step's mean / median ms, in brackets by how much less than in sequence (of the means; the median frame's), %")
     yield ""
     ways = [way["name"] for way in averages]
     yield from head(["scene, bodies", "frames", *ways])
