@@ -149,7 +149,7 @@ template <bool past_caches>
 void write_pairs(Keys one, Keys other, const KeyUnpacker<past_caches>& unpack, Pair* out) {
     const std::uint32_t *p = one.begin(), *q = other.begin(), *const p_end = one.end(), *const q_end = other.end();
     if (unpack.before_fours(out) != 0) unpack.one(*p < *q ? *p++ : *q++, out++);
-    std::uint32_t mixed[2 * block];
+    std::uint32_t mixed[block];
     for (; p_end - p >= block && q_end - q >= block; out += block) {
         const std::uint32_t* next = mixed;
         if (p[block - 1] < *q) {
